@@ -46,10 +46,16 @@ class ClusterStates:
         """The state of a cluster; what rounding loses of one that was exact is energy not known."""
         points = cluster.points
         state = [self.of_point[k] for k in points]
-        unknown = sum((self.of_point[each[0]].error_energy for each in self._sets if each[0] in points), arb(0))
+        unknown: dict[frozenset[int], arb] = {}  # of sets that moved together it is that of all
+        for each in self._sets:
+            if each[0] in points:
+                known = self.of_point[each[0]]
+                among = known.among or frozenset(each)
+                unknown[among] = known.error_energy.max(unknown.get(among, arb(0)))
         velocity, lost = self._joined_velocities(cluster, prescribed)
         displacement = [each.displacement for each in state]
-        motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
+        energy = sum(unknown.values(), arb(0))
+        motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], energy, decays=True)
         motion.round(velocity, displacement)
         motion.lose(self._springs.energy(cluster))
         motion.lose(lost)
@@ -116,7 +122,8 @@ class ClusterStates:
     def state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         moving = {cluster.leader(a): each for a, each in enumerate(motion.velocity)}
         moving |= {k: (arb(cluster.ratio(k)) * motion.velocity[cluster.group(k)]).mid() for k in cluster.stuck_points}
+        among = frozenset(cluster.points)
         return {
-            k: PointState(moving.get(k, arb(0)), motion.displacement[n], None, motion.unknown_energy)
+            k: PointState(moving.get(k, arb(0)), motion.displacement[n], None, motion.unknown_energy, among)
             for n, k in enumerate(cluster.points)
         }

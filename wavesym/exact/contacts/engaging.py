@@ -9,13 +9,14 @@ that only touches 0 is such a stretch, and no event; the slower it is then the s
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass, field
 
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Branch
 from wavesym.exact.contacts.crossing import certain_rise, sign_after
-from wavesym.exact.contacts.guards import BranchEnd, lasts_until
+from wavesym.exact.contacts.guards import BranchEnd, lasts_until, value_range
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.spring_branches import FINER, OneSided
 from wavesym.exact.contacts.springs import CornerSpring
@@ -25,6 +26,7 @@ from wavesym.numbers.doubles import middle
 _LEAST = 64  # resolutions that a stretch in doubt has, at least
 _LONGER = 4  # times as long in doubt as it should take
 _CLEAR, _MOSTLY = 64, arb(7) / 8  # errors of its stretch, and the part of what is left of it that it may lose unseen
+_NOTHING = arb(2) ** -200  # of the longest that it was
 _FASTER = 4  # times as fast as at its start it may get longer at most on one
 
 
@@ -37,7 +39,7 @@ class Engaging(OneSided):
 
     slowing: fmpq = field(default_factory=lambda: fmpq(1))
     doubt: fmpq = field(default_factory=fmpq)
-    _decision: Branch = field(default_factory=lambda: Branch(closed=False))
+    longest: arb = field(default_factory=lambda: arb(0))
 
     @classmethod
     def begin_damped(cls, link: int, spring: CornerSpring, slowing: fmpq) -> Engaging:
@@ -61,11 +63,6 @@ class Engaging(OneSided):
         return self.doubt
 
     @property
-    def branch(self) -> Branch:
-        """It acts or idles, whichever was certain last."""
-        return self._decision
-
-    @property
     def _beyond(self) -> arb:
         """How far beyond its gap it is."""
         return self.spring.side * self.stretch - arb(self.spring.gap)
@@ -81,28 +78,24 @@ class Engaging(OneSided):
         """How long it certainly does what it does; in doubt, until it should no longer be."""
         guard, resolution = self._guard(moved), resolution / FINER
         if self._is_in_doubt(moved):
-            return self._doubt_end(guard, low, moved.length, resolution)
+            return self._doubt_end(moved, low, resolution)
         if low == 0 and guard.begins is None and not guard.polynomial(arb(0)) > guard.error:
-            return self._vague_end(guard, moved.length, resolution)
+            return self._vague_end(moved, resolution)
         end = lasts_until(guard, low, moved.length, resolution)
         if end is not None and end.spread is not None and end.length <= _LEAST * resolution:
-            return self._doubt_end(guard, low, moved.length, resolution)
+            return self._doubt_end(moved, low, resolution)
         return None if end is None else BranchEnd(end.length, None)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
-        """Know its stretch at the end of one of time, and how long it may have been on its other branch."""
+        """Know its stretch at the end of one of time, and how long it may have been on its other branch.
+
+        What is at rest at its gap, but for what counts for nothing, is on the branch that it was on before.
+        """
         self.doubt = self.doubt + length if self.link in moved.doubts else fmpq(0)
         super().advance(moved, length)
-
-    def take(self, moved: JointStretch) -> None:
-        """Be on the branch that a stretch begins with; in doubt, still on the one before."""
-        super().take(moved)
-        if not self._is_in_doubt(moved):
-            self._decision = Branch(self.closed)
-
-    def _guard(self, moved: JointStretch) -> Enclosure:
-        (guard,) = moved.spring_motions[self.link].guards
-        return guard
+        self.longest = self.longest.max(abs(self.stretch).upper())
+        if abs(self._beyond) < self.longest * _NOTHING:
+            self.doubt = fmpq(0)
 
     def _side(self, moved: JointStretch) -> int:
         """1 where it is beyond its gap just after the start, -1 where it is not, 0 where neither is certain."""
@@ -118,8 +111,9 @@ class Engaging(OneSided):
     def _is_in_doubt(self, moved: JointStretch) -> bool:
         return self._side(moved) == 0 and not self._guard(moved).is_zero
 
-    def _vague_end(self, guard: Enclosure, length: fmpq, resolution: fmpq) -> BranchEnd | None:
+    def _vague_end(self, moved: JointStretch, resolution: fmpq) -> BranchEnd | None:
         """The same where its own stretch is known more closely at first than its guard is on a long one."""
+        guard, length = self._guard(moved), moved.length
         slope, margin = guard.polynomial.derivative()(arb(0)), abs(self._beyond).lower()
         if slope > 0:
             rise = certain_rise(guard, length, resolution)
@@ -128,15 +122,25 @@ class Engaging(OneSided):
             last = (middle(_MOSTLY * margin / abs(slope).upper()) / resolution).floor() * resolution
             if last > _LEAST * resolution:
                 return BranchEnd(fmpq(last), None) if last < length else None
-        return self._doubt_end(guard, fmpq(0), length, resolution)
+        return self._doubt_end(moved, fmpq(0), resolution)
 
-    def _doubt_end(self, guard: Enclosure, low: fmpq, length: fmpq, resolution: fmpq) -> BranchEnd | None:
-        """Where it should be certain, were it as slow as its dashpot makes it; or where it gets much faster."""
-        slope, near = guard.polynomial.derivative(), abs(guard.evaluate(fmpq(0))).upper()
-        fast, last = abs(slope(arb(0))).upper(), length
+    @staticmethod
+    def _is_steady(rate: Enclosure, length: fmpq, fast: arb) -> bool:
+        """Whether it gets longer at no more than some times as fast as at the start of a stretch."""
+        return bool(value_range(rate, length).abs_upper() <= _FASTER * fast)
+
+    def _doubt_end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """Where it should be certain, were it as slow as its dashpot makes it; or where it gets much faster.
+
+        Where it is at rest, as far as is known, that is as long as it stays so.
+        """
+        rate, near = self.spring.rate(moved.velocities), abs(self._guard(moved).evaluate(fmpq(0))).upper()
+        begins = rate.evaluate(fmpq(0))
+        fast, last = abs(begins).upper(), moved.length
         if fast > 0:
-            last = min(length, middle(_LONGER * arb(self.slowing) * near / fast))
-            while last > _LEAST * resolution and abs(slope(arb(0).union(arb(last)))) > _FASTER * fast:
-                last /= 2
+            if not begins.contains(0):
+                last = min(last, middle(_LONGER * arb(self.slowing) * near / fast))
+            halves = range(int((last / resolution).ceil()).bit_length())
+            last /= 1 << bisect_left(halves, True, key=lambda n: self._is_steady(rate, last / (1 << n), fast))
         last = max((last / resolution).ceil() * resolution, _LEAST * resolution, low)
-        return BranchEnd(fmpq(last), None) if last < length else None
+        return BranchEnd(fmpq(last), None) if last < moved.length else None

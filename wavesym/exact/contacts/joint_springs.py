@@ -34,9 +34,9 @@ class JointSprings:
         return bool(self.of_link)
 
     @property
-    def have_dashpots(self) -> bool:
-        """Whether dashpots act with some of them."""
-        return any(spring.dashpot != 0 for spring in self.of_link.values())
+    def may_idle(self) -> bool:
+        """Whether some of them act on one side."""
+        return any(spring.side != 0 for spring in self.of_link.values())
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
@@ -128,6 +128,21 @@ class JointSprings:
                 moving = acting_motion(spring, state.grow(rate, moved.length))
             moved.spring_motions[n] = moving
             moved.springs[n] = replace(moving.at_end(moved.length), shift=moved.springs[n].shift)
+
+    def beyond(self, n: int) -> arb:
+        """How far beyond its gap one that acts on one side may be, at the start of a stretch; at least 0."""
+        spring = self.of_link[n]
+        return (spring.side * self._state[n].stretch - arb(spring.gap)).upper().max(arb(0))
+
+    def hold_back(self, moved: JointStretch, most: Mapping[int, arb]) -> None:
+        """Know how far beyond their gaps some get at most that idle, as far as is known, on a stretch."""
+        for n, beyond in most.items():
+            spring, state = self.of_link[n], moved.springs[n]
+            last = arb(spring.gap) + beyond
+            if spring.side * state.stretch < last:
+                continue
+            ends = (spring.side * state.stretch).lower(), last.upper()
+            moved.springs[n] = replace(state, stretch=spring.side * ends[0].union(ends[1]), exact=None)
 
     def wrong_forces(self, moved: JointStretch) -> dict[int, arb]:
         """How wrong the force of each may be on a stretch, as the true motion may be on another branch."""

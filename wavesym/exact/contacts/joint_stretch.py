@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from flint import arb, fmpq
 
@@ -16,12 +16,16 @@ MOST_SWING = fmpq(20)
 
 @dataclass(frozen=True)
 class PointState:
-    """How fast a point is, and where: exact where that is known, and the energy of the error of its set."""
+    """How fast a point is, and where: exact where that is known, and the energy of the error of its set.
+
+    Or, that of all points that it moved `among` on the last stretch, together.
+    """
 
     velocity: arb
     displacement: arb
     exact: tuple[fmpq, fmpq] | None
     error_energy: arb
+    among: frozenset[int] = frozenset()
 
     @property
     def place(self) -> fmpq:
@@ -37,7 +41,7 @@ class PointState:
     def lose(self, energy: arb) -> PointState:
         """The same, by so much energy less known."""
         error_energy = ((self.error_energy.sqrt() + energy.sqrt()) ** 2).upper()
-        return PointState(self.velocity, self.displacement, None, error_energy)
+        return replace(self, exact=None, error_energy=error_energy)
 
 
 @dataclass

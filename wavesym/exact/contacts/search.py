@@ -33,6 +33,8 @@ from wavesym.numbers.doubles import nearest
 
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
+# and joints are moved beyond their last instants by so much: past what comes to them then of such instants
+_ECHO = fmpq(1, 2**214)
 # what changes its branch so often within so many shortest delays goes on for ever
 CHATTER, _MOMENT = 8, fmpq(1, 2**128)
 # bits with which instants are had
@@ -87,6 +89,7 @@ class Search:
         self, network: Network, loads: Sequence[AppliedLoad], last: Mapping[int, fmpq], relaxing: bool
     ) -> None:
         shortest = network.shortest
+        last = {number: until + shortest * _ECHO for number, until in last.items()}
         self.waves = TouchingWaves(network, last, loads)
         self.changes: list[Change] = []
         self.width = shortest * _WIDTH
@@ -254,7 +257,8 @@ class Search:
                 doubt = course.doubt
                 late = max(course.late, contact.late)
                 low = doubt.low if doubt is not None and doubt.high == start else start - late
-                self.changes.append(Change(contact.link, before, contact.branch, low, start))
+                high = start + contact.unseen(moved, self._resolution)
+                self.changes.append(Change(contact.link, before, contact.branch, low, high))
                 lately = self._lately.setdefault(contact.link, deque(maxlen=CHATTER))
                 lately.append(start)
                 if len(lately) == CHATTER and start - lately[0] <= self._moment:

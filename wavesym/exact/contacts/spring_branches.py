@@ -6,7 +6,7 @@ true one as `springs.py` says. So there is always one choice, and one that goes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flint import arb, fmpq, fmpq_poly
 
@@ -84,22 +84,55 @@ class _SpringCorner(Corner):
 
 @dataclass
 class OneSided(_SpringCorner):
-    """A spring that only pulls, or only pushes: it acts (`closed`), or idles."""
+    """A spring that only pulls, or only pushes: it acts (`closed`), or idles.
+
+    Where it comes to rest at its gap nothing may tell on which side of that it is. Then it idles, with a force that is
+    not known (`SteadyJoint.move`), and `branch` stays what it was.
+    """
+
+    _decision: Branch = field(default_factory=lambda: Branch(closed=False))
 
     @classmethod
     def begin(cls, link: int, spring: CornerSpring) -> OneSided:
         """At the start, where what is at its gap is taken for acting."""
-        return cls(link, spring, arb(0), spring.gap <= 0)
+        closed = spring.gap <= 0
+        return cls(link, spring, arb(0), closed, _decision=Branch(closed))
 
     @property
     def may_close(self) -> bool:
         """Its stretch is not well within its gap."""
         return not _well_below(self.spring.side * self.stretch, arb(self.spring.gap))
 
+    @property
+    def branch(self) -> Branch:
+        """It acts or idles, whichever was certain last."""
+        return self._decision
+
     def begins(self, moved: JointStretch) -> bool:
-        """Whether its guard does not become negative just after the start."""
+        """Whether its guard does not become negative just after the start; where nothing tells, it idles."""
+        if self._is_in_doubt(moved):
+            return self.link not in moved.closed_links
+        return _begins(self._guard(moved), moved.length)
+
+    def take(self, moved: JointStretch) -> None:
+        """Be on the branch that a stretch begins with; in doubt, still on the one before."""
+        super().take(moved)
+        if not self._is_in_doubt(moved):
+            self._decision = Branch(self.closed)
+
+    def unseen(self, moved: JointStretch, resolution: fmpq) -> fmpq:
+        """How long after the start of a stretch it is not yet seen that it is on its branch."""
+        return certain_rise(self._guard(moved), moved.length, resolution / FINER) or fmpq(0)
+
+    def _guard(self, moved: JointStretch) -> Enclosure:
         (guard,) = moved.spring_motions[self.link].guards
-        return _begins(guard, moved.length)
+        return guard
+
+    def _is_in_doubt(self, moved: JointStretch) -> bool:
+        """Whether it is at its gap at first, and nothing tells which way it goes."""
+        guard = self._guard(moved)
+        near = abs(guard.polynomial(arb(0))) <= TINY * guard.error
+        return guard.exact is None and bool(near) and leaning(guard, moved.length) == 0
 
 
 @dataclass

@@ -73,6 +73,11 @@ class CornerSpring:
         pull, push = self.limits
         return pull / self.stiffness, -push / self.stiffness
 
+    def is_opposite(self, other: CornerSpring) -> bool:
+        """Whether this one and another act between the same points, on two sides: never both at once."""
+        same = (self.left, self.right, self.ratio, self.side) == (other.left, other.right, other.ratio, -other.side)
+        return same and self.side != 0 and self.gap + other.gap >= 0
+
     def pull(self, sign: int) -> fmpq:
         """With how much it pulls where it yields."""
         return self.limits[0] if sign > 0 else -self.limits[1]

@@ -21,6 +21,7 @@ from wavesym.exact.contacts.friction_stops import FrictionStops
 from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import Displacements, JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
+from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms, with_bounds
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint_law import (
@@ -135,22 +136,53 @@ class SteadyJoint(ABC):
         unknown: dict[int, arb] = {}
         for _ in range(_ROUNDS):
             moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown, trial)
-            off = self._wrong_forces(moved, arriving)
+            off = self._wrong_forces(moved, arriving, unknown)
             if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
                 return moved
             unknown = {n: (2 * force).upper() for n, force in off.items()}
         raise SwingError(length / _SHORTER)
 
-    def _wrong_forces(self, moved: JointStretch, arriving: Sequence[Enclosure]) -> dict[int, arb]:
+    def _wrong_forces(
+        self, moved: JointStretch, arriving: Sequence[Enclosure], unknown: Mapping[int, arb]
+    ) -> dict[int, arb]:
         """How wrong the force of each spring with a corner may be, with the dashpots that act with them."""
-        doubts = self.springs.doubts(moved)
+        held = self._held_back(moved, unknown) if any(unknown.values()) else {}
+        most = {n: (arb(self.springs.of_link[n].stiffness) * beyond).upper() for n, beyond in held.items()}
+        doubts = {n: force.min(most.get(n, force)) for n, force in self.springs.doubts(moved).items()}
         rates = self._resolve_doubts(moved, doubts, arriving) if doubts else {}
         self.springs.follow(moved, rates)
         off, span = self.springs.wrong_forces(moved), arb(0).union(arb(moved.length))
+        off |= {n: off[n].min(force) for n, force in most.items()}
         moved.doubts = frozenset(n for n in doubts if off[n] != 0)
         for n in moved.doubts:
             off[n] += (arb(self.springs.of_link[n].dashpot) * abs(rates[n].evaluate_on(span))).upper()
+        self.springs.hold_back(moved, held)
         return off
+
+    def _held_back(self, moved: JointStretch, unknown: Mapping[int, arb]) -> dict[int, arb]:
+        """How far beyond their gaps springs get at most that idle, as far as is known, and whose ends have no mass.
+
+        Such a spring gets longer at r - w f, its own force f = K s; r is what all else makes of it. Where s is largest
+        on a stretch, beyond where it was before, its rate is 0, and so s = r/(w K).
+        """
+        if self.touches:
+            return {}
+        law, span = self._law_of(self.springs.select(moved.closed_links)), arb(0).union(arb(moved.length))
+        known = {k: moved.velocities[k] for k in range(len(law.mass)) if k not in law.light}
+        found = {}
+        for n, spring in self.springs.of_link.items():
+            if spring.side == 0 or n in moved.closed_links or unknown.get(n, arb(0)) == 0:
+                continue
+            if (lightness := self._lightness(spring, law)) == 0:
+                continue
+            forces = [[*terms, (-_ONE, moved.elastic[k])] for k, terms in enumerate(moved.acting)]
+            both = {m for m, other in self.springs.of_link.items() if other.is_opposite(spring)}  # one at a time
+            self.springs.add_unknown(forces, {m: force for m, force in unknown.items() if m != n and m not in both})
+            q = scatter(law, forces, known)
+            driven = spring.side * spring.rate(dict(enumerate(q))).evaluate_on(span)
+            farthest = driven.upper() / arb(lightness * spring.stiffness)
+            found[n] = self.springs.beyond(n).max(farthest.upper())
+        return found
 
     @abstractmethod
     def _resolve_doubts(
@@ -160,11 +192,16 @@ class SteadyJoint(ABC):
 
     def slowing(self, n: int) -> fmpq:
         """How many times as fast a spring gets longer without its dashpot, at most, where what is without mass does."""
-        spring, law = self.springs.of_link[n], self._law_of(frozenset())
+        spring = self.springs.of_link[n]
+        return 1 + spring.dashpot * self._lightness(spring, self._law_of(frozenset()))
+
+    @staticmethod
+    def _lightness(spring: CornerSpring, law: JointLaw) -> fmpq:
+        """How much faster a spring would get longer if it pulled less by 1: 0 where its ends are masses."""
         push = [fmpq(0)] * len(law.mass)
         push[spring.right], push[spring.left] = _ONE, -spring.ratio
         given = law.light_velocities(push, {}, exact_sum)
-        return 1 + spring.dashpot * sum((push[k] * velocity for k, velocity in given.items()), fmpq(0))
+        return sum((push[k] * velocity for k, velocity in given.items()), fmpq(0))
 
     def _move(
         self,
@@ -319,7 +356,7 @@ class SteadyJoint(ABC):
     def _strain(self, cluster: Cluster, result: JointStretch, places: Displacements | None) -> None:
         """How springs with a corner get longer; and what all springs pull, where dashpots act with some."""
         self.springs.strain(cluster, result, self._states.of_point, places)
-        if self.springs.have_dashpots:
+        if self.springs.may_idle:
             result.elastic |= self.forces.of_all_springs(cluster, places)
 
     def _less_known(
@@ -364,7 +401,7 @@ class SteadyJoint(ABC):
             if not relaxation.serves(shorter, terms):
                 continue
             q, u, missed = motion.relax(relaxation, waves, prescribed, terms)
-            if missed > self._energy * arb(2) ** (2 * (_MISSED - ctx.prec)):
+            if missed > self._energy.max(motion.rounded_energy) * arb(2) ** (2 * (_MISSED - ctx.prec)):
                 continue
             if shorter < length:
                 raise SwingError(shorter)

@@ -137,6 +137,16 @@ class JointMotion:
                 twice += sum((arb(c) * u * other for c, other in zip(row, displacement, strict=True) if c != 0), arb(0))
         return (twice / 2).upper().max(arb(0))
 
+    @property
+    def rounded_energy(self) -> arb:
+        """Of what rounding errors are parts: the energy that each velocity and each displacement has alone."""
+        law = self.law
+        parts = [arb(law.mass[k]) * self.velocity[k] ** 2 for k in law.heavy]
+        if law.springs:
+            rows = law.elastic or law.stiffness
+            parts += [arb(rows[k][k]) * place**2 for k, place in enumerate(self.displacement)]
+        return (sum(parts, arb(0)) / 2).upper()
+
     def lose(self, energy: arb) -> None:
         """Know less of the joint, by so much energy."""
         root = self.unknown_energy.sqrt() + energy.sqrt()
