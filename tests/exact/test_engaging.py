@@ -92,6 +92,28 @@ def test_what_only_touches_does_not_engage(gap: str) -> None:
     assert [(event.kind, event.double) for event in events(pulled)] == [("releases", 1.0)]
 
 
+@pytest.mark.parametrize("law", [{"dashpot": 3}, {}], ids=["damped", "plain"])
+def test_a_stiff_stop_that_comes_to_rest_at_its_gap_stays_on_its_branch(law: dict[str, Any]) -> None:
+    """Its stretch decays to exp(-400) of 1e-3 before a wave takes it away: as steps of the midpoint rule move it."""
+    stiffness, steady = 1000, 0 if law else 1
+    parts = [{"rod": 1}, {"joint": True, "name": "a", "dashpot": steady}, {"spring": stiffness, "only": "push", **law}]
+    pulse = {"at": "a", "times": [0, "1/3"], "steps": [1, -1]}
+    model = chain([*parts, "fixed"], "11/4", (pulse,))
+    assert [(event.kind, event.digits) for event in events(model)] == [("releases", "2.3333333333333333333")]
+    steps = 4000  # in which a wave comes back from the free end
+    step, place, sent, seen = 2 / steps, 0.0, [0.0] * steps, []
+    for k in range(11 * steps // 8):
+        pushed = ((k + 0.5) * step < 1 / 3) + 2 * sent[k]
+        rate = (pushed - stiffness * place) / (1 + steady + law.get("dashpot", 0) + stiffness * step / 2)
+        if place + rate * step / 2 <= 0:
+            rate = pushed / (1 + steady)
+        sent.append(rate - sent[k])
+        place += rate * step
+        seen.append(place)
+    _, places = Reference(model).values([0.25, 2.25, 2.5, 2.75])
+    assert list(places) == pytest.approx([seen[round(tau / step) - 1] for tau in (0.25, 2.25, 2.5, 2.75)], abs=2e-6)
+
+
 def test_two_stops_of_one_body_act_as_one() -> None:
     """At the same instants, to the last bit of one with the sum of both."""
     both = [{"mass": 1, "velocity": 1, "name": "a"}, {"spring": 3, "only": "push", "gap": "1/3", "dashpot": 1}, "fixed"]
