@@ -71,7 +71,7 @@ class Corner(ABC):
         """How long it has been open which branch it is on, where it is on none meanwhile."""
         return fmpq(0)
 
-    def unseen(self, moved: JointStretch, resolution: fmpq) -> fmpq:
+    def unseen_time(self, moved: JointStretch, resolution: fmpq) -> fmpq:
         """How long after the start of a stretch it is not yet seen that it is on its branch."""
         return fmpq(0)
 

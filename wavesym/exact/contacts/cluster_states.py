@@ -50,7 +50,7 @@ class ClusterStates:
         for each in self._sets:
             if each[0] in points:
                 known = self.of_point[each[0]]
-                among = known.among or frozenset(each)
+                among = known.companions or frozenset(each)
                 unknown[among] = known.error_energy.max(unknown.get(among, arb(0)))
         velocity, lost = self._joined_velocities(cluster, prescribed)
         displacement = [each.displacement for each in state]

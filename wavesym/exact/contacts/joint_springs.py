@@ -129,7 +129,7 @@ class JointSprings:
             moved.spring_motions[n] = moving
             moved.springs[n] = replace(moving.at_end(moved.length), shift=moved.springs[n].shift)
 
-    def beyond(self, n: int) -> arb:
+    def reach_beyond(self, n: int) -> arb:
         """How far beyond its gap one that acts on one side may be, at the start of a stretch; at least 0."""
         spring = self.of_link[n]
         return (spring.side * self._state[n].stretch - arb(spring.gap)).upper().max(arb(0))

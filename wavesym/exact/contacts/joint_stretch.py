@@ -18,14 +18,14 @@ MOST_SWING = fmpq(20)
 class PointState:
     """How fast a point is, and where: exact where that is known, and the energy of the error of its set.
 
-    Or, that of all points that it moved `among` on the last stretch, together.
+    Or, that of it and all `companions` together, with which it moved on the last stretch.
     """
 
     velocity: arb
     displacement: arb
     exact: tuple[fmpq, fmpq] | None
     error_energy: arb
-    among: frozenset[int] = frozenset()
+    companions: frozenset[int] = frozenset()
 
     @property
     def place(self) -> fmpq:

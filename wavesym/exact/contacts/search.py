@@ -257,7 +257,7 @@ class Search:
                 doubt = course.doubt
                 late = max(course.late, contact.late)
                 low = doubt.low if doubt is not None and doubt.high == start else start - late
-                high = start + contact.unseen(moved, self._resolution)
+                high = start + contact.unseen_time(moved, self._resolution)
                 self.changes.append(Change(contact.link, before, contact.branch, low, high))
                 lately = self._lately.setdefault(contact.link, deque(maxlen=CHATTER))
                 lately.append(start)

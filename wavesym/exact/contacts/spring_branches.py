@@ -120,7 +120,7 @@ class OneSided(_SpringCorner):
         if not self._is_in_doubt(moved):
             self._decision = Branch(self.closed)
 
-    def unseen(self, moved: JointStretch, resolution: fmpq) -> fmpq:
+    def unseen_time(self, moved: JointStretch, resolution: fmpq) -> fmpq:
         """How long after the start of a stretch it is not yet seen that it is on its branch."""
         return certain_rise(self._guard(moved), moved.length, resolution / FINER) or fmpq(0)
 

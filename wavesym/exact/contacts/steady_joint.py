@@ -146,7 +146,7 @@ class SteadyJoint(ABC):
         self, moved: JointStretch, arriving: Sequence[Enclosure], unknown: Mapping[int, arb]
     ) -> dict[int, arb]:
         """How wrong the force of each spring with a corner may be, with the dashpots that act with them."""
-        held = self._held_back(moved, unknown) if any(unknown.values()) else {}
+        held = self._farthest_reaches(moved, unknown) if any(unknown.values()) else {}
         most = {n: (arb(self.springs.of_link[n].stiffness) * beyond).upper() for n, beyond in held.items()}
         doubts = {n: force.min(most.get(n, force)) for n, force in self.springs.doubts(moved).items()}
         rates = self._resolve_doubts(moved, doubts, arriving) if doubts else {}
@@ -159,7 +159,7 @@ class SteadyJoint(ABC):
         self.springs.hold_back(moved, held)
         return off
 
-    def _held_back(self, moved: JointStretch, unknown: Mapping[int, arb]) -> dict[int, arb]:
+    def _farthest_reaches(self, moved: JointStretch, unknown: Mapping[int, arb]) -> dict[int, arb]:
         """How far beyond their gaps springs get at most that idle, as far as is known, and whose ends have no mass.
 
         Such a spring gets longer at r - w f, its own force f = K s; r is what all else makes of it. Where s is largest
@@ -181,7 +181,7 @@ class SteadyJoint(ABC):
             q = scatter(law, forces, known)
             driven = spring.side * spring.rate(dict(enumerate(q))).evaluate_on(span)
             farthest = driven.upper() / arb(lightness * spring.stiffness)
-            found[n] = self.springs.beyond(n).max(farthest.upper())
+            found[n] = self.springs.reach_beyond(n).max(farthest.upper())
         return found
 
     @abstractmethod
