@@ -11,6 +11,16 @@ static real force_now(const stream *state, int force)
     return integrated[force] ? state->force[force] : sum;
 }
 
+/* Whether an output that rested so far does so still, but for the rounding of what it is read from. */
+static int is_rounding(const stream *state, int output, real size)
+{
+    real sum = 0;
+    for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
+        sum += shown_force[k] >= 0 ? absolute(gain[k] * force_now(state, shown_force[k])) : size_of_term(state, k);
+    }
+    return size <= 4 * rounding * sum;
+}
+
 static void read_outputs(stream *state, real *out)
 {
     for (int output = 0; output < OUTPUTS; ++output) {
@@ -24,7 +34,10 @@ static void read_outputs(stream *state, real *out)
                 out[output] += gain[k] * value_now(state, k);
             }
         }
-        state->largest[output] = absolute(out[output]) > state->largest[output] ? absolute(out[output]) : state->largest[output];
+        const real size = absolute(out[output]);
+        if (size > state->largest[output] && (state->largest[output] > 0 || !is_rounding(state, output, size))) {
+            state->largest[output] = size;
+        }
     }
 }
 

@@ -117,6 +117,19 @@ static real integral_since(const stream *state, int k, real t)
     return sum;
 }
 
+/* How large the polynomials are that term k of an output is read from: where they cancel, it is their rounding. */
+static real size_of_term(const stream *state, int k)
+{
+    const int before = state->time - rest[k] < -nearness(state);
+    int windows;
+    int after = state->first_breakpoint[phase_before(state, late[k] + before, &windows)];
+    real sum = size_of(state->waves[slot_of(state, track[k], late[k] + before)]);
+    for (; after >= 0; after = state->next_breakpoint[after]) {
+        sum += size_of(state->waves[slot_after(state, after, track[k], windows)]);
+    }
+    return absolute(gain[k]) * (summed[k] ? panel : (real)1) * sum;
+}
+
 static real value_now(const stream *state, int k)
 {
     const real t = state->time - rest[k];
