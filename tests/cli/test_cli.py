@@ -133,7 +133,7 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
     ("arguments", "expected"),
     [
         (["bogus"], "wavesym: No such command 'bogus'."),
-        (["--bogus"], "wavesym: No such option '--bogus'."),
+        (["--bogus"], "wavesym: No such option"),
         (["run"], "wavesym run: Missing argument 'SCENE'."),
         (["run", "mine.toml", "more"], "wavesym run: Got unexpected extra argument"),
         (["run", "mine.toml", "--samples", "0"], "wavesym run: Invalid value for '--samples': 0 is not in the range"),
