@@ -23,7 +23,7 @@ from wavesym.errors import CostError, SpacingError, ToleranceError, UnservedErro
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction, nearest, rational
-from wavesym.programs import hats
+from wavesym.programs import hats, schemes
 from wavesym.programs.choice import choose
 from wavesym.programs.hats import HatMarch, hat_march, split, still
 from wavesym.programs.making import program
@@ -31,6 +31,7 @@ from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march, march
 from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
+from wavesym.programs.schemes.march import Marching
 from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
@@ -174,6 +175,20 @@ def test_instants_of_one_phase_and_others_have_the_same_values(monkeypatch: pyte
     assert np.all(np.abs(together - alone) <= allowed)
     assert np.all(np.abs(together[:, ::3] - streamed) <= allowed)
     assert np.all(np.isnan(found.scheme.evaluate([-1e-9, np.nextafter(found.tau_max, 99), np.nan])))
+
+
+def test_instants_of_their_own_take_all_outputs_one_march(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the march is not kept."""
+    model = chain([{"at": "a", "spacing": "0.31", "samples": [0, 2, -1, 3, 0, 1, 5]}], 4)
+    found = made(model)
+    own = np.random.default_rng(2).uniform(0, found.tau_max, (len(model.probes), 3))
+    one_by_one = np.array([found.scheme.evaluate(taus)[k] for k, taus in enumerate(own)])
+    marched = []
+    monkeypatch.setattr(ShiftedHats, "KEPT", 0)
+    monkeypatch.setattr(schemes.hats, "Marching", lambda *given: marched.append(given) or Marching(*given))
+    values = replace(found).scheme.each(own)
+    assert len(marched) == 1
+    assert np.all(np.abs(values - one_by_one) <= 2 * np.array([[each.bound * each.largest] for each in found.outputs]))
 
 
 def test_evenly_lie_an_even_number_of_instants_from_sample_to_sample() -> None:

@@ -59,9 +59,7 @@ class HatScheme(Scheme):
         flat, back = np.unique(tau, return_inverse=True)
         own = back.reshape(tau.shape)
         out = sum((np.take_along_axis(rest.evaluate(flat), own, axis=1) for rest in self._rest), np.zeros(tau.shape))
-        for output, taus in enumerate(tau):
-            out[output] += sum(record.evaluate(taus, range(output, output + 1))[0] for record in self._records)
-        return np.asarray(out)
+        return np.asarray(sum((record.each(tau) for record in self._records), out))
 
     def evenly(self, step: float) -> NDArray[np.float64]:
         """Instants of the horizon, no more than `step` apart, that lie alike between the samples of the first record.
@@ -112,10 +110,9 @@ class ShiftedHats:
         ends = (np.linspace(low, high, parts + 1) for low, high in ((0.0, starts[0]), (starts[-1], last)))
         return np.unique(np.clip(np.concatenate([*ends, taus.ravel()]), 0.0, last))
 
-    def evaluate(self, tau: NDArray[np.float64], outputs: range | None = None) -> NDArray[np.float64]:
-        """All outputs, or some, at tau: (outputs, tau.size)."""
-        chosen = range(self._march.outputs) if outputs is None else outputs
-        out = np.zeros((len(chosen), tau.size))
+    def evaluate(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All outputs at tau: (outputs, tau.size)."""
+        out = np.zeros((self._march.outputs, tau.size))
         latest, phase = self._locate_hats(tau)
         order = np.argsort(phase, kind="stable")
         order = order[latest[order] >= 0]
@@ -124,15 +121,26 @@ class ShiftedHats:
         groups = np.split(order, self._phase_edges(phase[order]))
         alone = np.array([group[0] for group in groups if len(group) == 1], int)
         if alone.size:
-            out[:, alone] = self._single(latest[alone], phase[alone], chosen)
+            out[:, alone] = self._single(latest[alone], phase[alone])
         several = [group for group in groups if len(group) > 1]
         at_once = max(1, self.VALUES // (len(out) * len(self._sample) + 1))
         for first in range(0, len(several), at_once):
             some = several[first : first + at_once]
             last = np.array([latest[group].max() for group in some])
-            responses = self._responses(last, phase[[group[0] for group in some]], chosen)
+            responses = self._responses(last, phase[[group[0] for group in some]])
             for group, response in zip(some, responses, strict=True):
                 out[:, group] = self._convolve(response)[:, latest[group]]
+        return out
+
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own: tau and values are (outputs, n). All of them take one march."""
+        latest, phase = self._locate_hats(tau)
+        out = np.zeros(tau.shape)
+        for block in self._blocks():
+            for output, row in enumerate(out):
+                own = latest[output], phase[output], range(output, output + 1)
+                for q, m, values in self._read(block, *own):
+                    row += self._weigh(latest[output], q, m, values[0])
         return out
 
     def _locate_hats(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
@@ -175,24 +183,28 @@ class ShiftedHats:
             yield block
 
     def _read(
-        self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range
+        self,
+        block: WindowBlock,
+        latest: NDArray[np.int_],
+        phase: NDArray[np.float64],
+        outputs: range | None = None,
     ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]]":
-        """The response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and outputs, some at a time."""
+        """What a block has of the response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and all
+        outputs, or some; some instants at a time."""
         step = float(self._march.step)
-        for block in self._blocks():
-            until = block.first + block.count
-            low = np.floor((block.first * step - phase) / self._spacing).astype(int) - 1
-            high = np.ceil((until * step - phase) / self._spacing).astype(int) + 1
-            low, high = np.maximum(low, 0), np.minimum(high, latest)
-            counts = np.maximum(high - low + 1, 0)
-            ends = np.cumsum(counts)
-            for first in range(0, int(ends[-1]), self.PAIRS):
-                pair = np.arange(first, min(first + self.PAIRS, int(ends[-1])))
-                q = np.searchsorted(ends, pair, side="right")
-                m = low[q] + (pair - (ends - counts)[q])
-                window, place, t = self._places(m, phase[q])
-                here = (window >= block.first) & (window < until)
-                yield q[here], m[here], block.read_places(window[here], place[here], t[here], outputs)
+        until = block.first + block.count
+        low = np.floor((block.first * step - phase) / self._spacing).astype(int) - 1
+        high = np.ceil((until * step - phase) / self._spacing).astype(int) + 1
+        low, high = np.maximum(low, 0), np.minimum(high, latest)
+        counts = np.maximum(high - low + 1, 0)
+        ends = np.cumsum(counts)
+        for first in range(0, int(ends[-1]), self.PAIRS):
+            pair = np.arange(first, min(first + self.PAIRS, int(ends[-1])))
+            q = np.searchsorted(ends, pair, side="right")
+            m = low[q] + (pair - (ends - counts)[q])
+            window, place, t = self._places(m, phase[q])
+            here = (window >= block.first) & (window < until)
+            yield q[here], m[here], block.read_places(window[here], place[here], t[here], outputs)
 
     def _places(
         self, m: NDArray[np.int_], phase: NDArray[np.float64]
@@ -207,20 +219,27 @@ class ShiftedHats:
         place = np.searchsorted(march.begin, t, side="right") - 1
         return cycle.astype(int) * len(march.begin) + place, place, t
 
-    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
+    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs at instants of different phases, added up hat by hat."""
-        out = np.zeros((len(outputs), latest.size))
-        for q, m, values in self._read(latest, phase, outputs):
-            weights = self._sample[latest[q] - m]
-            for total, row in zip(out, values, strict=True):
-                total += np.bincount(q, row * weights, minlength=latest.size)
+        out = np.zeros((self._march.outputs, latest.size))
+        for block in self._blocks():
+            for q, m, values in self._read(block, latest, phase):
+                for total, row in zip(out, values, strict=True):
+                    total += self._weigh(latest, q, m, row)
         return out
 
-    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
+    def _weigh(
+        self, latest: NDArray[np.int_], q: NDArray[np.int_], m: NDArray[np.int_], values: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What hats add to instants: values to those q, each times the sample of the hat m before the latest."""
+        return np.asarray(np.bincount(q, values * self._sample[latest[q] - m], minlength=latest.size), np.float64)
+
+    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Those to one hat at all m, for some phases: (phases, outputs, m)."""
-        made = np.zeros((latest.size, len(outputs), int(latest.max()) + 1))
-        for q, m, values in self._read(latest, phase, outputs):
-            made[q, :, m] = values.T
+        made = np.zeros((latest.size, self._march.outputs, int(latest.max()) + 1))
+        for block in self._blocks():
+            for q, m, values in self._read(block, latest, phase):
+                made[q, :, m] = values.T
         return made
 
     def _convolve(self, response: NDArray[np.float64]) -> NDArray[np.float64]:
