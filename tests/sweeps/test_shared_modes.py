@@ -39,7 +39,13 @@ NUMBERS = {
     "system.storey[0].stiffness": ["500 MN/m", "600 MN/m", "711 MN/m"],
     "system.storey[1].floor_mass": ["250 t", "300 t"],
     "system.damping": ["0.02", "0.05"],
+    "load[0].scale": ["0.5", "1.5"],
 }
+LOADS = [
+    {"spacing": "0.1 s", "unit": "g", "record": {"samples": ["1/9", "1/4", "-3/10", "1/5", "-1/10", 0]}},
+    {"shape": "sine", "amplitude": "0.2 g", "frequency": "2 Hz"},
+]
+AMPLITUDES = {"load[1].amplitude": ["0.1 g", "0.3 g"], "load[0].scale": [2, 1], "system.damping": ["0.02", "0.05"]}
 COLUMNS = {
     "system.storey[0].height": ["3 m", "3.5 m", "4 m"],
     "system.storey[1].column_mass": ["9 t", "11 t", "14 t"],
@@ -78,16 +84,20 @@ def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str
 
 
 @pytest.mark.quick(1)
-@pytest.mark.parametrize("vary", [NUMBERS, COLUMNS], ids=["numbers of modes", "anything else"])
-def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any], thorough: bool) -> None:
-    made = planned(FRAME, vary, keep={"histories": 21})
+@pytest.mark.parametrize(
+    ("load", "vary"),
+    [(LOADS[:1], NUMBERS), (LOADS, AMPLITUDES), (FRAME["load"], COLUMNS)],
+    ids=["numbers of modes", "multiples of loads", "anything else"],
+)
+def test_cases_side_by_side_are_what_they_are_alone(load: list[Any], vary: Mapping[str, Any], thorough: bool) -> None:
+    made = planned({**FRAME, "load": load}, vary, keep={"histories": 21})
     assert kind(made)[0] == "structures"
     first = shared_modes._first_structure(made)
     assert first is not None
-    assert (first.lanes is not None) is (vary is NUMBERS)
+    assert (first.lanes is not None) is (vary is not COLUMNS)
     found = whole(made)
     assert len({case["max"].tobytes() for case in found.values()}) == len(found)
-    assert_as_alone(made, found, 3 if thorough else 6)
+    assert_as_alone(made, found, 3 if thorough else 11)
 
 
 @pytest.mark.slow

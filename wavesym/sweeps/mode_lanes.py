@@ -1,7 +1,8 @@
 """Columns of a sweep that are numbers of modes times a factor: known without making the scene of each case.
 
-Stiffnesses and masses of storeys and of parts of a chain, and a damping ratio: nothing else of a scene depends on them.
-Which numbers a column is, and with what factor, is seen from two scenes with other values of it.
+Stiffnesses and masses of storeys and of parts of a chain, a damping ratio, and the scale of a record or the amplitude
+of a shape: nothing else of a scene depends on them. Which numbers a column is, and with what factor, is seen from two
+scenes with other values of it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.numbers.arrays import Array
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters, names_of
 from wavesym.programs.runtime.network import RuntimeField
 from wavesym.scene import Scene, lower
@@ -27,6 +29,7 @@ from wavesym.sweeps.plan import SweepPlan
 
 _PATHS = re.compile(
     r"system\.(damping|storey\[\d+\]\.(stiffness|column_mass|floor_mass)|(branch\[\d+\]\.)?parts\[\d+\]\.(mass|spring))"
+    r"|load\[\d+\]\.(scale|amplitude)"
 )
 _PROBES = (Fraction(5, 4), Fraction(3, 2))  # times the first value of a column
 _SAME = 1e-13
@@ -56,19 +59,20 @@ def mode_lanes(plan: SweepPlan, first: ModeParameters, bare: SweepPlan) -> ModeL
     columns = [column for dimension in plan.dimensions for column in dimension.columns]
     if not all(_PATHS.fullmatch(column.path) and isinstance(column.coordinate[0], float) for column in columns):
         return None
-    own = own_numbers(first.fields)
+    own, without_samples = own_numbers(first.fields), structure_parameters(Scene(**bare.fields))
     places, factors, taken = dict[str, Any](), dict[str, Array](), set[int]()
     for column in columns:
         try:
             probes = [_probe(bare, column, times) for times in _PROBES]
         except WavesymError:
             return None
-        ratios = [probe / np.where(own == 0, 1.0, own) for probe in probes]
+        sizes = _sizes(without_samples, column)
+        ratios = [probe / np.where(sizes == 0, 1.0, sizes) for probe in probes]
         (varied,) = np.nonzero(np.abs(ratios[0] - 1) > _SAME)
         expected = np.ones(len(own))
         for ratio, times in zip(ratios, _PROBES, strict=True):
             expected[varied] = float(times)
-            if np.any(np.abs(np.where(own == 0, 1.0, ratio) - expected) > _SAME):
+            if np.any(np.abs(np.where(sizes == 0, 1.0, ratio) - expected) > _SAME):
                 return None
         if not len(varied) or taken & set(varied.tolist()):
             return None
@@ -90,8 +94,17 @@ def structure_parameters(scene: Scene) -> ModeParameters:
     return mode_parameters(model, names, amplitudes(scene))
 
 
+def _sizes(parameters: ModeParameters, column: Column) -> Array:
+    """The numbers, for a column of a load times the first change of each load: the factor of samples is always 1."""
+    sizes = own_numbers(parameters.fields)
+    if column.path.startswith("load"):
+        weights = [nearest(load.changes[0].weight) if load.changes else 0.0 for load in parameters.amplitudes]
+        sizes[len(sizes) - len(weights) :] *= weights
+    return sizes
+
+
 def _probe(plan: SweepPlan, column: Column, times: Fraction) -> Array:
-    """The numbers of the first case with another value of a column."""
+    """The sizes of the first case's numbers with another value of a column."""
     value = times * Fraction(column.coordinate[0])
     text = f"{value} {column.unit}" if column.unit else str(value)
-    return own_numbers(structure_parameters(Scene(**replace_at_path(plan.fields, column.path, text))).fields)
+    return _sizes(structure_parameters(Scene(**replace_at_path(plan.fields, column.path, text))), column)

@@ -1,4 +1,4 @@
-"""Damped structures that differ in their systems alone: sets of numbers of one of them, under loads that they share.
+"""Damped structures that differ in their systems alone, or in how large loads are: sets of numbers of one of them.
 
 Where all that is varied are numbers of modes (`mode_lanes`) these are known at once. Else each case is lowered by
 itself, with next to no samples in its loads, so that whatever is varied may be: a height, the second moment of columns.
@@ -47,13 +47,13 @@ _ROUNDED = 1e-13
 
 
 def serves(plan: SweepPlan) -> bool:
-    """Whether cases are damped structures under the same loads, and modes serve the first of them."""
+    """Whether cases are damped structures under the same loads or multiples of them, and modes serve the first one."""
     columns = [column for dimension in plan.dimensions for column in dimension.columns]
     return (
         plan.cases >= _FEWEST
         and set(plan.summary) <= set(RUNTIME_ARRAYS)
-        and all(steps(column.path)[0] == "system" for column in columns)
-        and _first_structure(plan) is not None
+        and (first := _first_structure(plan)) is not None
+        and (first.lanes is not None or all(steps(column.path)[0] == "system" for column in columns))
     )
 
 
