@@ -463,6 +463,7 @@ def test_units_are_those_of_one_unit_of_the_load() -> None:
     assert found.units == ("mm",)
     assert found["displacement@bob"] == pytest.approx(1e3 * per / (2.1e7 - 100 * w**2 + 300j * w), rel=1e-8)
     assert found.frequency_label == "frequency [Hz]"
+    assert found.notes[-1].startswith(f"per {found.load_unit} of bob: displacement in mm; right to ")
     row = json.loads(found.json())["outputs"][0]
     assert row["unit"] == "mm"
     assert row["amplitude"] == pytest.approx(

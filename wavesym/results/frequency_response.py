@@ -119,11 +119,18 @@ class FrequencyResponse(OutputRows):
         poles, undecided = (", ".join(f"{each:g}" for each in found) for found in (self.poles, self.possible_poles))
         return (
             *self._model.labels.structure_notes,
-            f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
+            f"per {self.load_unit or 'unit'} of {self.load}{self._units_text}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
             *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),
             *([f"not decided at {undecided} {unit}: the load may not excite it"] if undecided else []),
         )
+
+    @property
+    def _units_text(self) -> str:
+        """In what units outputs are, by what they are; empty where they have none."""
+        pairs = zip(self.outputs, self.units, strict=True)
+        found = dict.fromkeys(f"{name.partition('@')[0]} in {unit}" for name, unit in pairs if unit)
+        return f": {', '.join(found)}" if found else ""
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame: a complex column for each output over the frequency. WavesymError without pandas."""
