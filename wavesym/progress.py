@@ -24,6 +24,7 @@ class Progress:
     def __init__(self, what: str) -> None:
         self.what = self._doing = what
         self._detail = ""
+        self._has_warned = False
         self._start = monotonic()
 
     def tell(self, step: str) -> None:
@@ -33,6 +34,13 @@ class Progress:
     def tell_detail(self, detail: str) -> None:
         """How far that step has come."""
         self._detail = f", {detail}"
+
+    def warn(self, text: str) -> None:
+        """A line that stays, on a terminal or not: why this takes long. Only the first one is written."""
+        if not self._has_warned:
+            self._has_warned = True
+            with suppress(OSError):
+                _put(f"{chr(13) * sys.stderr.isatty()}{self.what}: {text}\n")
 
     def count(self, cases: int, done: int, before: int) -> None:
         """How many cases are done, `before` of them before this line; how fast, and how long the rest will take."""
@@ -63,32 +71,38 @@ class Progress:
             _put(f"\r{'':{width}}\r")
 
 
-_shown: list[Progress] = []
+_running: list[Progress] = []
 
 
 @contextmanager
 def progress(what: str) -> Iterator[Progress]:
     """Show a line while the body runs, on a terminal. The body must put nothing out itself."""
     line = Progress(what)
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield line
-        return
     done = Event()
-    _shown.append(line)
     shower = Thread(target=line.show, args=(done,), daemon=True)
-    shower.start()
+    shown = sys.stderr is not None and sys.stderr.isatty()
+    if shown:
+        shower.start()
+    _running.append(line)
     try:
         yield line
     finally:
+        _running.remove(line)
         done.set()
-        shower.join()
-        _shown.remove(line)
+        if shown:
+            shower.join()
 
 
 def tell_detail(detail: str) -> None:
     """How far what takes long has come, on the line that is shown, if there is one."""
-    if _shown:
-        _shown[-1].tell_detail(detail)
+    if _running:
+        _running[-1].tell_detail(detail)
+
+
+def warn_long(text: str) -> None:
+    """Say why what is being done takes long, once, wherever standard error leads; nothing where no command does it."""
+    if _running and sys.stderr is not None:
+        _running[-1].warn(text)
 
 
 def _put(text: str) -> None:

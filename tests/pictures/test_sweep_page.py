@@ -129,6 +129,8 @@ def test_a_map_has_the_colours_of_its_values() -> None:
     (encoded,) = re.findall('base64,([^"]*)"', made.markup)
     assert pixels(b64decode(encoded)) == [[SHADES // 2, SHADES], [0, SHADES - 1]]
     assert "the largest where system.a = 2, system.b = 1" in made.markup
+    assert "size of strain@1 (dimensionless); at the spot system.a = 2, system.b = 1<" in made.markup
+    assert "halo" not in made.markup  # words over the colours of other cases
 
 
 @pytest.mark.parametrize("numbers", [True, False])

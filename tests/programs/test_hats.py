@@ -32,6 +32,7 @@ from wavesym.programs.march.evaluator import March, judge_march, march
 from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.programs.schemes.march import Marching
+from wavesym.progress import progress
 from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
@@ -308,6 +309,30 @@ def test_auto_takes_it_where_nothing_else_serves() -> None:
     assert isinstance(choice.evaluator, HatMarch)
     assert choice.name == "march"
     assert "march of one hat" in choice.reason
+
+
+def test_a_command_says_what_a_jump_costs_and_what_would_let_modes_serve(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before it marches, once, also where standard error is a file; nothing from Python."""
+
+    def refused(*_: object) -> None:
+        raise CostError("a march")
+
+    monkeypatch.setattr(hats, "judge_march", refused)
+
+    def lines(first: int, until: int) -> int:
+        for _ in range(2):
+            with pytest.raises(CostError, match="a march"):
+                hat_march(shaken([first, *SAMPLES], until=until))
+        return capsys.readouterr().err.count("as a load jumps: modes, which are sooner, take one that does not")
+
+    assert lines(7, 20_000) == 0
+    found = []
+    for first, until in ((7, 20_000), (0, 20_000), (7, 36)):
+        with progress("work"):
+            found.append(lines(first, until))
+    assert found == [1, 0, 0]
 
 
 def test_numbers_are_readable() -> None:

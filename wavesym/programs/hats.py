@@ -24,16 +24,19 @@ from wavesym.numbers.doubles import common_measure, in_order, nearest, rational,
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict
-from wavesym.programs.march.evaluator import March, judge_march
-from wavesym.programs.march.plan import readable
+from wavesym.programs.march.evaluator import March, first_degree, judge_march, refuse_long
+from wavesym.programs.march.plan import march_plan, readable
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.schemes import names_read
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.tables import Tables
+from wavesym.progress import warn_long
 
 _MOST = 100_000  # samples of a record
 _FEW = 4  # instants that are marched as they are
+
+_LONG, _SECONDS = 10.0, 1.5e-7  # seconds that are announced, and about those of all marches for an operation of one
 
 _ZERO = fmpq(0)
 
@@ -237,8 +240,11 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     if not parts.records:
         return None
     moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
+    remaining = replace(model, loads=parts.rest)
     try:
-        rest = [judge_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+        if {load.source for load in parts.rest} & {step for step, _ in _pairs(model)}:
+            _warn_of_jump(remaining)
+        rest = [judge_march(remaining)] if parts.rest or any(moving) else []
     except SpacingError:
         return None
     hats = [judge_march(still(model, record)) for record in parts.records]
@@ -257,6 +263,18 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
             for probe, error, size in zip(model.probes, errors.tolist(), largest.tolist(), strict=True)
         ),
     )
+
+
+def _warn_of_jump(model: Model) -> None:
+    """A line, where a march takes long, with what would let modes serve. Raises as a march."""
+    plan = march_plan(model, DOUBLE)
+    degree = first_degree(plan, DOUBLE)
+    refuse_long(plan, degree, 0.0, DOUBLE)
+    if (seconds := March(plan, degree, DOUBLE, (), plan.tau_max).total_work * _SECONDS) > _LONG:
+        warn_long(
+            f"a march hat by hat may take {seconds:.0f} s of a processor, as a load jumps: modes, which are sooner, "
+            "take one that does not (of a record whose first sample is not 0 write `start`, one spacing)"
+        )
 
 
 def _superpose(record: RecordLoad, march: March, hat: Verdict) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from wavesym.numbers.arrays import Array
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture, spot
 from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, element, polyline, upright
 from wavesym.pictures.reduction import reduce_vertices
@@ -171,12 +171,14 @@ def _map(number: str, output: SweepOutput, size: Array, axes: list[StoredAxis], 
     where = ", ".join(_case_label(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
     frame = Frame(x, y, _axis_title(across), _axis_title(upward), _places(upward), _places(across))
     name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
-    bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False)
+    bar = colour_bar(
+        f"{name}; at the spot {_short(where)}", (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False
+    )
     title = f"{output.name} over {across.name} and {upward.name}"
     ends = f"from {number_text(low, output.unit, 5)} to {number_text(high, output.unit, 5)}"
     description = f"Colours show the size, {ends}, the largest where {where}."
-    across_at, upward_at = x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1))
-    mark = labelled_spot(across_at, upward_at, _short(where), above=upward_at > TOP + 30)
+    # words beside the spot would cover the colours of other cases
+    mark = spot(x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1)))
     return PagePicture(
         title,
         picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, mark, bar),
