@@ -255,3 +255,18 @@ def test_what_friction_holds_throughout_beside_what_turns_round_stays_at_rest() 
     load = [{"at": "m1", "times": [1, 4], "steps": [-2, "1/3"], "ramps": [0, "-4/3"]}]
     output = {"until": 6, "displacement": ["m0", "m1"], "velocity": ["m0"]}
     assert wrong({"name": "held", "system": {"type": "chain", "parts": parts}, "load": load, "output": output}) == []
+
+
+def test_a_spring_begins_to_yield_beside_one_that_yields_already() -> None:
+    """One joint, as friction holds the mass between them: neither keeps the other from going on."""
+    parts = [
+        {"mass": 2, "velocity": "-5/3", "name": "a", "spring": 9, "yield": 2},
+        {"spring": 1},
+        {"mass": 2, "velocity": 2, "name": "b", "friction": 1000},
+        {"spring": "29/4", "yield": [3, "11/4"]},
+        {"mass": "3/2", "velocity": "-3/4", "name": "c", "spring": "7/2", "only": "push"},
+    ]
+    pushed = {"at": "c", "times": ["3/2", 2], "steps": [-2, "5/2"], "ramps": [-2, 0]}
+    output = {"until": "13/5", "tolerance": 1e-9, "velocity": ["a", "c"], "displacement": ["a", "c"]}
+    table = {"name": "x", "system": {"type": "chain", "parts": parts}, "load": [pushed], "output": output}
+    assert wrong(table) == []

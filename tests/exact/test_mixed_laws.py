@@ -248,8 +248,8 @@ def test_three_masses_that_rub_between_two_contacts_come_to_rest() -> None:
     assert wrong(table, first="0") == []
 
 
-def test_what_changes_its_branch_for_ever_is_refused_at_once() -> None:
-    """Two springs at their limits and a load that turns, all at tau = 1: each makes the next one change."""
+def test_springs_at_their_limits_as_a_load_turns_do_not_change_each_other_for_ever() -> None:
+    """Two of them, and friction that slips, all at tau = 1."""
     parts = [
         {"mass": 1, "name": "n0", "friction": "1/2"},
         {"spring": 1, "yield": "1/2", "preload": "1/2"},
@@ -264,5 +264,4 @@ def test_what_changes_its_branch_for_ever_is_refused_at_once() -> None:
     ]
     output = {"until": 4, "velocity": ["n0", "n1", "n2"]}
     table = {"name": "tie", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
-    with pytest.raises(GrazingError, match=r"^spring at 0: changes its branch 8 times within no time at tau = 1, "):
-        events(lower(Scene(**table)))
+    assert wrong(table) == []

@@ -35,8 +35,9 @@ class KnownInstant:
 class ContactEvent(KnownInstant):
     """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball; what rubs there slips or sticks.
 
-    A spring that acts on one side engages and releases; one that yields does so until it holds again. A contact that is
-    closed from the start is no event. `link` is its number in the network.
+    A spring that acts on one side engages and releases; one that yields does so until it holds again. What is closed,
+    engaged, held or stuck from the start is no event: the first is that it leaves that, at 0 where it does so at once.
+    `link` is its number in the network.
     """
 
     x: str

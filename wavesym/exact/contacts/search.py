@@ -23,7 +23,7 @@ from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
 from wavesym.exact.contacts.engaging import Engaging
 from wavesym.exact.contacts.guards import BranchEnd
-from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError, sliding_sign
 from wavesym.exact.contacts.spring_branches import OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
 from wavesym.exact.joints.enclosure import Enclosure
@@ -292,16 +292,20 @@ class Search:
 
     @staticmethod
     def _choices(course: Course) -> list[tuple[Closed, Sliding]]:
-        """What may be closed, and slide: as it is first, then as much as may be closed."""
+        """What may be closed, and slide: with the fewest changes first, then with as much closed as may be."""
         shut = [contact.link for contact in course.contacts if contact.may_close]
         found = [
             (closed, sliding)
             for closed in sorted(subsets(shut), key=len, reverse=True)
             for sliding in _ways(contact for contact in course.contacts if contact.link not in closed)
         ]
-        closed = frozenset(contact.link for contact in course.contacts if contact.closed)
-        sliding = frozenset((contact.link, contact.sign) for contact in course.contacts if contact.sign)
-        return sorted(found, key=lambda choice: choice != (closed, sliding))
+        now = {contact.link: (contact.closed, contact.sign) for contact in course.contacts}
+        return sorted(
+            found,
+            key=lambda choice: sum(
+                (link in choice[0], sliding_sign(link, choice[1])) != branch for link, branch in now.items()
+            ),
+        )
 
     def _add_stage(self, course: Course, stage: Stage, moved: JointStretch) -> None:
         course.stages.append(stage)

@@ -115,9 +115,9 @@ class OneSided(_SpringCorner):
         return _begins(self._guard(moved), moved.length)
 
     def take(self, moved: JointStretch) -> None:
-        """Be on the branch that a stretch begins with; in doubt, still on the one before."""
+        """Be on the branch that a stretch begins with; in doubt, or at rest at its gap, still on the one before."""
         super().take(moved)
-        if not self._is_in_doubt(moved):
+        if not (self._is_in_doubt(moved) or self._guard(moved).is_zero):
             self._decision = Branch(self.closed)
 
     def unseen_time(self, moved: JointStretch, resolution: fmpq) -> fmpq:
