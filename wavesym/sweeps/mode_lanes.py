@@ -59,14 +59,13 @@ def mode_lanes(plan: SweepPlan, first: ModeParameters, bare: SweepPlan) -> ModeL
     columns = [column for dimension in plan.dimensions for column in dimension.columns]
     if not all(_PATHS.fullmatch(column.path) and isinstance(column.coordinate[0], float) for column in columns):
         return None
-    own, without_samples = own_numbers(first.fields), structure_parameters(Scene(**bare.fields))
+    own = own_numbers(first.fields)
     places, factors, taken = dict[str, Any](), dict[str, Array](), set[int]()
     for column in columns:
         try:
-            probes = [_probe(bare, column, times) for times in _PROBES]
+            sizes, *probes = [_probe(bare, column, times) for times in (Fraction(1), *_PROBES)]
         except WavesymError:
             return None
-        sizes = _sizes(without_samples, column)
         ratios = [probe / np.where(sizes == 0, 1.0, sizes) for probe in probes]
         (varied,) = np.nonzero(np.abs(ratios[0] - 1) > _SAME)
         expected = np.ones(len(own))
