@@ -116,7 +116,7 @@ class Model:
     followed_probes: tuple[Probe, ...] = ()
     written_speeds: tuple[fmpq, ...] = ()
     speed_adjustment: fmpq | None = None
-    lines: Callable[[], Model] | None = field(default=None, compare=False, repr=False)
+    lines: Callable[[fmpq], Model] | None = field(default=None, compare=False, repr=False)
 
     @property
     def in_lines(self) -> Model:
@@ -124,10 +124,14 @@ class Model:
 
         CostError for too many samples.
         """
+        return self.straighten(fmpq(0))
+
+    def straighten(self, coarsest: fmpq) -> Model:
+        """The same, where a tolerance is enough that need be no smaller."""
         if self.lines is None:
             return self
         kept = {name: getattr(self, name) for name in ("probes", "until", "endless", "followed_probes")}
-        lines = self.lines()
+        lines = self.lines(coarsest)
         return replace(lines, tolerance=max(self.tolerance, lines.tolerance), **kept)
 
     def refuse_polynomials(self) -> None:

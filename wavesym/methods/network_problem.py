@@ -20,6 +20,9 @@ _MOST_STEPS = 200
 
 Stated = TypeVar("Stated", bound=Problem)
 
+_SHAPES = fmpq(1, 10**4)
+"""The tolerance of straight lines in place of a shape: what other methods are compared for is less sharp."""
+
 
 def network_problem(model: Model, kind: type[Stated]) -> Stated:
     """State the problem of a model, contacts and modal damping included, as a `kind` of Problem.
@@ -27,7 +30,7 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
     Of links with other laws that have corners it has the dashpots alone, as far as they act all the time. Loads of a
     shape are straight lines.
     """
-    model = model.in_lines
+    model = model.straighten(_SHAPES)
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))

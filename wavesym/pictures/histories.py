@@ -122,7 +122,7 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
 
 def drawable(model: Model) -> Program:
     """A program of a model for pictures: of those that will do that which is made most quickly."""
-    quick = list(_QUICK.items())
+    quick = [] if model.lines else list(_QUICK.items())  # these would take shapes as thousands of lines
     for kind, least in quick if _fits(model) else reversed(quick):
         with suppress(WavesymError):
             return make(model.tolerating(max(model.tolerance, least)), Request(kind))

@@ -26,7 +26,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import fraction, rational
 from wavesym.records.load import RecordedLoad
 from wavesym.scene.notes import (
     changed_speeds,
@@ -115,8 +115,13 @@ def _build_model(scene: Scene) -> Model:
         preset=SystemParameters(chain) if chain else None,
         written_speeds=written_speeds(scene),
         speed_adjustment=_speed_adjustment(scene),
-        lines=partial(lower, in_lines) if in_lines is not scene else None,
+        lines=partial(_lower_straight, scene, in_lines) if in_lines is not scene else None,
     )
+
+
+def _lower_straight(scene: Scene, in_lines: Scene, coarsest: fmpq) -> Model:
+    """The model of a scene in lines, of which that to its own tolerance is there."""
+    return lower(in_lines if fraction(coarsest) <= in_lines.tolerance else scene.straighten(fraction(coarsest)))
 
 
 def _with_powers(network: Network, loads: Iterable[Load]) -> Network:

@@ -228,10 +228,16 @@ class Scene(SceneTable):
     @property
     def in_lines(self) -> Scene:
         """The same scene, its loads of a shape as straight lines between samples; itself, if it has none."""
+        return self.straighten(Fraction(0))
+
+    def straighten(self, coarsest: Fraction) -> Scene:
+        """The same, where a tolerance is enough that need be no smaller."""
         if self._straight or not self._is_shaped:
             return self
         other = self.model_copy()
         vars(other).pop("tolerance", None)
+        other._straight = True
+        vars(other)["tolerance"] = max(coarsest, other.tolerance)
         other._shape_loads(straight=True)
         return other
 
