@@ -53,7 +53,7 @@ def test_a_body_meets_a_spring_and_leaves_it() -> None:
 
 
 def test_what_rests_at_its_gap_beside_what_moves_does_nothing() -> None:
-    """Friction holds the mass between them, as far as is known; the second spring carries nothing, and stays engaged."""
+    """Friction holds the mass between them; the second spring carries nothing, and stays engaged."""
     parts = [{"mass": 3, "velocity": "-5/4", "name": "a"}, {"spring": 8, "gap": [-1, 0]}]
     held = {"mass": 1, "name": "b", "friction": 1000}
     assert happenings(chain([*parts, held, {"spring": 3, "gap": ["-2/3", 0]}, "fixed"], "1/2")) == []
