@@ -194,9 +194,9 @@ def test_pieces_that_others_have_too_are_made_once(monkeypatch):
     )
     made = fits(scene)
     asked, moved = [], []
-    segments, shortened = motion.Motion.segments, pieces._shorten
+    segments, shortened = motion.Motion.segments, pieces.shorten
     monkeypatch.setattr(motion.Motion, "segments", lambda *given: asked.append(given) or segments(*given))
-    monkeypatch.setattr(pieces, "_shorten", lambda *given: moved.append(given) or shortened(*given))
+    monkeypatch.setattr(pieces, "shorten", lambda *given: moved.append(given) or shortened(*given))
     first = made.fit_pieces(4)
     before = len(moved)
     again = made.fit_pieces(2)

@@ -11,11 +11,12 @@ from flint import arb, arb_poly, ctx, fmpq
 
 import wavesym
 from tests.support.counted import Counted
+from wavesym.exact.output_piece import shorten
 from wavesym.exact.tables.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.piece_grid import Pieces
-from wavesym.programs.pieces import _Course, _cut_off, _Cuts, _Fits, _shorten, _underflow
+from wavesym.programs.pieces import _Course, _cut_off, _Cuts, _Fits, _underflow
 from wavesym.programs.program import ProgramOutput
 from wavesym.scene import lower
 
@@ -139,7 +140,7 @@ def test_of_a_ball_the_largest_number_counts():
     assert _cut_off([arb(1), wide], arb(2), DOUBLE)[0] >= 1.5
     assert _cut_off([wide], arb(0), DOUBLE)[0] >= 1.5 * 2 * arb(DOUBLE.roundoff)
     assert _underflow([wide], DOUBLE) >= (2 + 2 * 1.5) * arb(DOUBLE.smallest)
-    assert _shorten(arb_poly([arb(1), wide * 1e-70]), arb(1.2e-70)).length() == 2
+    assert shorten(arb_poly([arb(1), wide * 1e-70]), arb(1), arb(1.2e-70)).length() == 2
 
 
 SIMPLE = wavesym.Scene(
@@ -200,15 +201,15 @@ def test_underflow_is_in_the_bound():
 def test_what_is_left_out_as_negligible_is_in_the_balls():
     full = arb_poly([arb(1), arb(2), arb(3e-70), arb(-4e-70), arb(1e-70)])
     with ctx.workprec(512):
-        found = _shorten(full, arb(6e-70))
+        found = shorten(full, arb(1), arb(6e-70))
         assert found.length() == 3
         for t in (-1, fmpq(1, 3), 1):
             assert found(arb(t)).contains(full(arb(t)))
         assert found[0].rad() >= 5e-70 * (1 - 1e-9)
         assert found[0].rad() <= 6e-70
-        assert _shorten(full, arb(5e-70) * fmpq(99, 100)).length() == 4
-        assert _shorten(full, arb(9e-70)).length() == 2
-        assert _shorten(arb_poly([arb(1e-70)]), arb(1e-60)).length() == 0
+        assert shorten(full, arb(1), arb(5e-70) * fmpq(99, 100)).length() == 4
+        assert shorten(full, arb(1), arb(9e-70)).length() == 2
+        assert shorten(arb_poly([arb(1e-70)]), arb(1), arb(1e-60)).length() == 0
 
 
 def test_a_largest_value_is_looked_for_on_every_piece():

@@ -96,7 +96,7 @@ def test_wrong_values_fail(monkeypatch, file):
     right = programs.files
     wrong = {
         "small.c": ("return sum;", "return sum * (1 + 1e-9);"),
-        "small.py": ("return out.reshape", "out *= 1 + 1e-9\n        return out.reshape"),
+        "small.py": ("return self._values(flat)", "return (1 + 1e-9) * self._values(flat)"),
     }[file]
 
     def tampered(program, language):
@@ -116,8 +116,9 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
 
     def tampered(program, language):
         made = right(program, language)
-        changed = "out[0, 7] = np.nan\n        return out.reshape"
-        return {name: text.replace("return out.reshape", changed) for name, text in made.items()}
+        changed = "values[0, 7] = np.nan\n            return values"
+        changed = f"values = self._values(flat)\n            {changed}"
+        return {name: text.replace("return self._values(flat)", changed) for name, text in made.items()}
 
     monkeypatch.setattr(programs, "files", tampered)
     text, passed = verify(drive(), requests=CLOSED)
