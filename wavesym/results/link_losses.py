@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _PLAIN = (fmpq(1), "")
 _BITS = 128
-_GROUND = "ground"  # the place of what does not move
+_AT_REST = ("ground", "fixed")  # what does not move is called
 
 
 class MeasuredQuantity(NamedTuple):
@@ -67,7 +67,7 @@ class LinkSummary(NamedTuple):
 
 
 def _where(place: str, between: tuple[str, str]) -> str:
-    names = ", ".join(name for name in between if name != _GROUND and not name.startswith(place))
+    names = ", ".join(name for name in between if name not in _AT_REST and not name.startswith(place))
     return f"{place} ({names})" if names else place
 
 
