@@ -433,3 +433,10 @@ def test_a_table_of_the_ground_means_what_its_keys_do(units: dict[str, Any]) -> 
     np.testing.assert_array_equal(wavesym.run(one, samples=5).values, wavesym.run(other, samples=5).values)
     assert np.ptp(wavesym.run(one, samples=5).values) > 0
     assert lower(one).network == lower(other).network
+
+
+def test_a_path_through_ground_leads_to_what_is_written_there() -> None:
+    parts = [{"mass": 1, "name": "a", "ground": {"spring": 2}}, {"rod": 1}, {"mass": 2}]
+    scene = Scene(name="held", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": ["a"]})
+    other = scene.with_({"system.parts[0].ground.spring": 3})
+    assert lower(other).network.points[0].stiffness == 3

@@ -44,6 +44,8 @@ def _replace(inner: Any, steps: list[str | int], value: object, path: str) -> An
         if not isinstance(inner, list | tuple) or step >= len(inner):
             raise SceneError(f"nothing at [{step}]", path)
         return [_replace(each, rest, value, path) if k == step else each for k, each in enumerate(inner)]
+    if step == "ground" and rest and isinstance(inner, Mapping) and inner.keys() & {"mass", "joint"}:
+        return _replace(inner, rest, value, path)  # its keys are the part's own
     # what is new at the end of a path is judged with the whole scene
     if not isinstance(inner, Mapping) or (rest and step not in inner):
         known = inner if isinstance(inner, Mapping) else ()
