@@ -20,7 +20,7 @@ def value_notes(model: Model) -> list[str]:
 
 
 def _load_notes(model: Model) -> list[str]:
-    """A line for a scene in which nothing happens, and for each contact whose sides fly apart."""
+    """A line for a scene in which nothing happens, and where no contact is struck for each whose sides fly apart."""
     network = model.network
     if model.loads:
         return []
@@ -28,11 +28,14 @@ def _load_notes(model: Model) -> list[str]:
         return ["no load, so that all outputs are 0"]
     speeds = {end: bar.velocity for bar in network.bars for end in (bar.left, bar.right)}
     speeds |= {number: point.velocity for number, point in enumerate(network.points) if point.mass}
+    contacts = [link for link in network.links if link.contact]
+    if any(speeds.get(link.left, 0) > speeds.get(link.right, 0) for link in contacts):
+        return []
     return [
         f"contact at x = {link.place}: its two sides move apart from the start; where one strikes the other, write the "
         "velocity of the left one above that of the right one"
-        for link in network.links
-        if link.contact and speeds.get(link.left, 0) < speeds.get(link.right, 0)
+        for link in contacts
+        if speeds.get(link.left, 0) < speeds.get(link.right, 0)
     ]
 
 
