@@ -228,6 +228,7 @@ def test_a_scene_to_start_from_has_the_unit_of_its_record(capsys: pytest.Capture
         assert main(["init", "frame", "--record", "quake.csv", "--unit", unit, "-o", "first.toml"]) == 0
         assert capsys.readouterr() == ("", "")
         largest[unit] = wavesym.summary(wavesym.Scene.from_toml("first.toml"))["drift@1"].max.value
+        Path("first.toml").unlink()
     assert largest["g"] == pytest.approx(9.80665 * largest["m/s^2"], rel=1e-9)
     Path("acc.csv").write_text("time,acc [m/s^2]\n0,0\n0.5,1\n1,-2\n")
     assert main(["init", "frame", "--record", "acc.csv", "--unit", "m/s^2"]) == 0

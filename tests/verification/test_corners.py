@@ -198,7 +198,7 @@ def test_what_happens_just_at_the_end_and_what_does_at_the_start_are_not_taken_f
     table["output"] = {"until": 4, "tolerance": 1e-9, "velocity": ["n0", "n1"]}
     seen = known(table)
     outcomes = judged(integrations.corner_changes(seen))
-    assert [outcome.cells["tau"] for outcome in outcomes[3:]] == ["0", "1.32853791756", "2", "3.6526462432"]
+    assert [outcome.cells["tau"] for outcome in outcomes[3:]] == ["0", "1.32853791756", "2", "3.6526462432", "4"]
     assert all(outcome.passed for outcome in outcomes)
     wrong = known(*changed(table, "friction"))
     assert not all(outcome.passed for outcome in judged(integrations.corner_changes(wrong)))
