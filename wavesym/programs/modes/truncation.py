@@ -69,6 +69,7 @@ class ModalModel(ABC, Generic[K]):
 
     @cached_property
     def loads(self) -> LinearLoads:
+        self._refuse_motion()  # which acts, too
         return linear_loads(self.model.loads, self.sources, self.model.until, self.model.describe_step)
 
     @cached_property
@@ -142,15 +143,19 @@ class ModalModel(ABC, Generic[K]):
         """UnservedError for what no modes serve, CostError for too much."""
         network = self.model.network
         network.refuse_dead_loads()
+        self._refuse_motion()
+        if not self.drivers:
+            raise UnservedError("load: none acts by output.until, and modes need one (write a load (all is at rest))")
+        _ = self.loads  # refused before the work
+        self._refuse_many(len(network.bars))
+
+    def _refuse_motion(self) -> None:
+        network = self.model.network
         moving = any(bar.velocity != 0 or bar.strain != 0 for bar in network.bars)
         if moving or any(point.velocity != 0 for point in network.points):
             raise UnservedError(
                 "system: a motion or strain at tau = 0 is not supported by modes (take pieces or march)"
             )
-        if not self.drivers:
-            raise UnservedError("load: none acts by output.until, and modes need one (write a load (all is at rest))")
-        _ = self.loads  # refused before the work
-        self._refuse_many(len(network.bars))
 
     def _refuse_many(self, rods: int) -> None:
         most = isqrt(self.WORK // self.FIRST)
