@@ -275,6 +275,24 @@ def test_truncation_is_no_less_than_what_a_step_loses(mass, degree, ratio) -> No
         assert lost <= 1.01 * sqrt(energy)
 
 
+def test_what_rounding_hides_of_a_last_coefficient_counts_as_missed() -> None:
+    """q_d - p_d is told from what is sent and arrives, which has lost some units of rounding of it, or made some."""
+    plan = march_plan(lower(body("10/3")))
+    joint, scheme, degree, u = only_body(plan), scheme_of(plan, 9), 9, 2.0**-53
+    losses = Losses(plan, MarchTables(plan, degree, DOUBLE), scheme, u, 0.0)
+    number, group = next((n, each) for n, each in enumerate(scheme.groups) if isinstance(each, Bodies))
+    of, a = losses._bodies[number, 0], np.zeros((1, 1, len(joint.space.ports), degree + 1))
+    a[0, 0, 0, degree] = 1
+    p = group.push[0, 0]
+    assert 1 / 2 < p < 1
+    for k in range(65):
+        sent = -a
+        sent[0, 0, :, degree] += group.ratio[0] * (p + k * u)  # exact
+        *_, (missed,) = losses._of_bodies(group, of, a, sent, np.zeros((1, 1, 1, 3)), np.zeros((1, 1, 1)))
+        least = of.squared_loss[0] * (of.leak[0] * k * u) ** 2
+        assert least <= missed <= 4 * least + of.squared_loss[0] * (of.leak[0] * 16 * u) ** 2
+
+
 def acts(since, start, half, powers, window=1.0):
     """A load on a panel as a series, as in C; `start` is by how much that begins later than the panel of the event."""
     c = [Rounded.wrong(power) for power in powers]

@@ -9,7 +9,7 @@ from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
-from flint import fmpq, fmpq_mat, fmpq_series
+from flint import arb, fmpq, fmpq_mat, fmpq_series
 from hypothesis import given, settings
 
 from tests.support.drives import drive, every, exact, small
@@ -36,7 +36,7 @@ from wavesym.programs.march.bound import (
 from wavesym.programs.march.evaluator import march
 from wavesym.programs.march.losses import block_loss
 from wavesym.programs.march.plan import MarchPlan, largest_number, march_plan, power_of_two
-from wavesym.programs.march.responses import block_response
+from wavesym.programs.march.responses import NEGLIGIBLE, _round, block_response
 from wavesym.programs.march.space import JointSpace, joint_space
 from wavesym.programs.march.tail import Tail
 from wavesym.programs.schemes.march import _series
@@ -101,6 +101,15 @@ def test_a_block_misses_its_equation_as_it_says(degree: int, length: fmpq) -> No
     wanted[[0, size]] = (-1) ** size, -1
     assert np.allclose(left, sqrt(2) * eps * wanted, rtol=0, atol=1e-14)
     assert abs(cheb.chebval(1, q) - (found[size] + given[size])) < 1e-14
+
+
+def test_no_number_of_a_matrix_is_rounded_before_it_is_known() -> None:
+    """A small one, too, or it is wrong by more than its roundoff; what is left out is 0."""
+    small = 2.0**-40
+    assert _round([[arb(1), arb(small, small * 2.0**-45)]]) is None
+    found = _round([[arb(1), arb(small, small * 2.0**-90), arb(NEGLIGIBLE / 2, 2.0**-110)]])
+    assert found is not None
+    assert found.tolist() == [[1.0, small, 0.0]]
 
 
 def test_a_block_at_the_end_of_a_panel() -> None:

@@ -49,6 +49,25 @@ def test_jumps_are_those_of_loads_and_start() -> None:
     assert none == [0, 0]
 
 
+@pytest.mark.parametrize("mass", [3, "1/5"])
+@pytest.mark.parametrize(("moved", "rods"), [(1, 0), (1, 1), (2, -1)])
+def test_a_body_jumps_by_what_it_is_faster_than_its_rods_and_by_what_acts(mass, moved, rods) -> None:
+    """Of impedance S = 1 + 2 in all; in the root of energy, of which g r makes what jumps in the next derivative.
+
+    If it is faster by v, rods are sent sqrt(S) v more than they had, and M q' = -S v is sqrt(S) g v of x, g = S/M, half
+    of which goes on. A force of 1 makes q' jump by 1/M, as a wave that arrives would of 2 g sqrt(S) times its size.
+    """
+    one, other = ({"rod": 1, "impedance": z, "velocity": rods} for z in (1, 2))
+    parts = [one, {"mass": mass, "velocity": moved, "name": "b"}, other, "absorbing"]
+    load = [{"at": "b", "times": [0], "steps": [1]}]
+    system, output = {"type": "chain", "parts": parts}, {"until": "1/2", "velocity": ["b"]}
+    plan = march_plan(lower(Scene(name="made", system=system, load=load, output=output)))
+    acts, rate = 1 / (2 * sqrt(3)), rate_of(plan)
+    assert rate == pytest.approx(3 / float(Fraction(mass)), rel=1e-9)
+    wanted = [acts + 3 / 2 * sqrt(3) * abs(moved - rods), 0, 0]
+    assert jumps_of(plan) == pytest.approx(wanted, rel=1e-9)
+
+
 def grown(rate, crossings, jumps, order):
     """[x^order] of s(x) after so many crossings and two more, each G times as much."""
     ctx.cap, before = order + 1, ctx.cap

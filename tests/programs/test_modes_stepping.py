@@ -139,7 +139,6 @@ class OneMode(SteppedModes):
         return made
 
 
-@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("turn", "damping", "count", "fast"),
     [(np.pi, 0.02, 3200, False), (0.0056, 0.5, 170_000, True)],
