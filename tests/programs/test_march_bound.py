@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from math import inf, pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from flint import arb, fmpq, fmpq_mat, fmpq_series
 from hypothesis import given, settings
 
 from tests.support.drives import drive, every, exact, small
-from tests.support.marches import all_windows, apart, energies, energy_of, missed, missed_at, squared
+from tests.support.marches import all_windows, apart, energies, energy_of, missed, missed_at, scheme_of, squared
 from tests.support.rounded import Rounded
 from wavesym.errors import WavesymError
 from wavesym.exact.joints.joint_law import JointLaw
@@ -38,8 +40,9 @@ from wavesym.programs.march.losses import block_loss
 from wavesym.programs.march.plan import MarchPlan, largest_number, march_plan, power_of_two
 from wavesym.programs.march.responses import NEGLIGIBLE, _round, block_response
 from wavesym.programs.march.space import JointSpace, joint_space
+from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.march.tail import Tail
-from wavesym.programs.schemes.march import _series
+from wavesym.programs.schemes.march import WindowBlock, _series
 from wavesym.scene import Scene, lower
 
 Q = fmpq
@@ -202,16 +205,26 @@ def test_energy_with_a_wrong_weight_is_seen() -> None:
     assert np.ptp(energy_of(wrong, 24)) > 1e-2
 
 
-def of_one_kind(law: str) -> Scene:
-    """A chain that is loaded, of rods and joints of one kind alone, nothing of which is rounded when it begins."""
-    joints = {
-        "bodies": [{"mass": 1, "name": "a"}, {"mass": "7/5"}, {"mass": "1/3"}],
-        "blocks": [{"mass": 1, "spring": 1, "name": "a"}, {"mass": "7/5", "spring": "1/3"}, {"mass": 2, "spring": 1}],
-        "scatterers": [{"joint": True, "dashpot": "1/7", "name": "a"}, {"joint": True}, {"joint": True}],
+def of_one_kind(law: str, force: int = 1, time: int = 1, **outputs: list[Any]) -> Scene:
+    """A chain that is loaded, of rods and joints of one kind alone, nothing of which is rounded when it begins.
+
+    In other units, if such are given: forces are numbers so many times as large, instants and lengths too.
+    """
+    m, k, z = Fraction(force * time), Fraction(force, time), Fraction(force)
+    joints: list[dict[str, Any]] = {
+        "bodies": [{"mass": m, "name": "a"}, {"mass": m * 7 / 5}, {"mass": m / 3}],
+        "blocks": [
+            {"mass": m, "spring": k, "name": "a"},
+            {"mass": m * 7 / 5, "spring": k / 3},
+            {"mass": m * 2, "spring": k},
+        ],
+        "scatterers": [{"joint": True, "dashpot": z / 7, "name": "a"}, {"joint": True}, {"joint": True}],
     }[law]
-    parts = [joints[0], {"rod": 1}, joints[1], {"rod": "1/2", "impedance": "7/3"}, joints[2]]
-    load = [{"at": "a", "times": [0, "1/3"], "steps": [1, "-2/3"], "ramps": [0, "1/3"]}]
-    output = {"until": 12, "tolerance": "0.5", "velocity": ["3/4"]}
+    rods = {"rod": time, "impedance": z}, {"rod": Fraction(time, 2), "impedance": z * 7 / 3}
+    parts = [joints[0], rods[0], joints[1], rods[1], joints[2]]
+    times, steps, ramps = [0, Fraction(time, 3)], [z, z * -2 / 3], [0, k / 3]
+    load = [{"at": "a", "times": times, "steps": steps, "ramps": ramps}]
+    output = {"until": 12 * time, "tolerance": "0.5", **(outputs or {"velocity": [Fraction(time * 3, 4)]})}
     return Scene(name="kind", system={"type": "chain", "parts": parts}, load=load, output=output)
 
 
@@ -235,6 +248,21 @@ def proved(plan: MarchPlan, degree: int, real=DOUBLE) -> tuple[float, float]:
     """Of the norm of energy of the error what is truncated and rounded, at most, in the size of the loads."""
     verdict, size = judge(plan, degree, real), nearest(power_of_two([largest_number(plan)]))
     return size * verdict.truncation_error, size * verdict.rounding_error
+
+
+@KINDS
+@pytest.mark.parametrize(("force", "time"), [(2**20, 1), (1, 2**20)])
+def test_a_bound_is_the_same_in_any_units(law: str, force: int, time: int) -> None:
+    """Energy is a force times a time; velocities are numbers as before, and displacements so many times as large."""
+    shown, degree = {"velocity": [Q(3, 4)], "displacement": [Q(1, 4)]}, 9
+    of_one, of_other = (
+        march_plan(lower(of_one_kind(law, f, t, **{each: [fraction(x * t) for x in xs] for each, xs in shown.items()})))
+        for f, t in ((1, 1), (force, time))
+    )
+    wanted = sqrt(force * time) * np.array(proved(of_one, degree))
+    assert proved(of_other, degree) == pytest.approx(tuple(wanted), rel=1e-9)
+    velocity, displacement = judge(of_one, degree, DOUBLE).errors
+    assert judge(of_other, degree, DOUBLE).errors == pytest.approx((velocity, displacement * time), rel=1e-9)
 
 
 @KINDS
@@ -358,6 +386,16 @@ def test_a_heavy_point_that_no_rod_shows_moves_as_far_as_its_size_allows() -> No
     )
 
 
+def test_what_rounding_hides_of_a_block_counts_as_missed() -> None:
+    """1 + 0.99 u - 1 is 0 to a program."""
+    plan, unit = march_plan(lower(of_one_kind("blocks"))), 2.0**-53
+    losses = bounds.Losses(plan, MarchTables(plan, 4, DOUBLE), scheme_of(plan, 4), unit, 0.0)
+    given, rows = np.ones((1, 1, 3)), np.array([[1.0, 0.99 * unit, -1.0]])
+    (missed,) = losses._truncation_losses(rows, 0.5, given, given)
+    assert given @ rows.T == 0
+    assert missed >= (0.99 * unit * block_loss(0.5)) ** 2
+
+
 @pytest.mark.parametrize("turned", [1e-6, 0.1, 1.0, 30.0])
 def test_a_block_loses_what_it_sends_and_what_it_keeps(turned) -> None:
     """Of the error of a state whose size is 2 eps at most, and grows by g h on the panel: both parts, added."""
@@ -452,6 +490,31 @@ def arrived(c, t, start, half):
     u = Rounded.array([local(since(t, start), half)])
     (wave,) = _series(c[:, np.newaxis], u)
     return wave + wave._scaled(1e-9)  # with another wave
+
+
+def test_what_reading_loses_is_in_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of waves that are right, and all T_d: as much as is counted, where a stretch ends."""
+    plan = march_plan(lower(of_one_kind("bodies")))
+    march_blocks = bounds._march_blocks
+
+    def steep(*of: Any) -> Iterator[WindowBlock]:
+        for block in march_blocks(*of):
+            block.waves[:] = np.eye(DEGREE + 1)[-1]
+            yield block
+
+    class Nothing(bounds.Losses):
+        initial_error = 0.0
+
+        def of_block(self, block: WindowBlock) -> tuple[float, float]:
+            return 0.0, 0.0
+
+    monkeypatch.setattr(bounds, "_march_blocks", steep)
+    monkeypatch.setattr(bounds, "Losses", Nothing)
+    monkeypatch.setattr(bounds, "smoothness", lambda *_: Tail(DEGREE, 0.0))
+    (error,) = judge(plan, DEGREE, DOUBLE).errors
+    gains = sum(abs(nearest(term.gain)) for term in plan.outputs[0].terms)
+    found, _ = errors(arrived, 0.0, 0.5)
+    assert gains * found[-1] * 2.0**-53 <= error <= 2 * gains * found[-1] * 2.0**-53
 
 
 @STRETCHES
