@@ -205,12 +205,13 @@ def test_energy_with_a_wrong_weight_is_seen() -> None:
     assert np.ptp(energy_of(wrong, 24)) > 1e-2
 
 
-def of_one_kind(law: str, force: int = 1, time: int = 1, **outputs: list[Any]) -> Scene:
+def of_one_kind(law: str, force: int = 1, time: int = 1, heavy: Fraction = Fraction(1), **outputs: list[Any]) -> Scene:
     """A chain that is loaded, of rods and joints of one kind alone, nothing of which is rounded when it begins.
 
-    In other units, if such are given: forces are numbers so many times as large, instants and lengths too.
+    In other units, if such are given: forces are numbers so many times as large, instants and lengths too. Masses and
+    springs are so many times as `heavy`.
     """
-    m, k, z = Fraction(force * time), Fraction(force, time), Fraction(force)
+    m, k, z = heavy * force * time, heavy * force / time, Fraction(force)
     joints: list[dict[str, Any]] = {
         "bodies": [{"mass": m, "name": "a"}, {"mass": m * 7 / 5}, {"mass": m / 3}],
         "blocks": [
@@ -222,7 +223,7 @@ def of_one_kind(law: str, force: int = 1, time: int = 1, **outputs: list[Any]) -
     }[law]
     rods = {"rod": time, "impedance": z}, {"rod": Fraction(time, 2), "impedance": z * 7 / 3}
     parts = [joints[0], rods[0], joints[1], rods[1], joints[2]]
-    times, steps, ramps = [0, Fraction(time, 3)], [z, z * -2 / 3], [0, k / 3]
+    times, steps, ramps = [0, Fraction(time, 3)], [z, z * -2 / 3], [0, z / 3 / time]
     load = [{"at": "a", "times": times, "steps": steps, "ramps": ramps}]
     output = {"until": 12 * time, "tolerance": "0.5", **(outputs or {"velocity": [Fraction(time * 3, 4)]})}
     return Scene(name="kind", system={"type": "chain", "parts": parts}, load=load, output=output)
@@ -274,6 +275,21 @@ def test_rounding_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyP
     assert 0 < error <= rounded < 1e4 * error
     assert rounded == pytest.approx(2.0**29 * proved(plan, degree, DOUBLE)[1], rel=1e-3)
     monkeypatch.setattr(bounds.Losses, *without(slice(0, 3), law))
+    assert proved(plan, degree, SINGLE)[1] < error
+
+
+@pytest.mark.parametrize(
+    ("law", "heavy", "part"),
+    [("bodies", Fraction(1, 10**10), 0), ("bodies", Fraction(10**10), 2), ("blocks", Fraction(10**10), 2)],
+)
+def test_rounding_of_what_is_sent_or_kept_is_seen(
+    law: str, heavy: Fraction, part: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is light keeps hardly any energy, and what is heavy sends hardly any."""
+    plan, degree = march_plan(lower(of_one_kind(law, heavy=heavy)), SINGLE), 12
+    error = apart(plan, all_windows(plan, degree, SINGLE), all_windows(plan, degree, DOUBLE))
+    assert 0 < error <= proved(plan, degree, SINGLE)[1]
+    monkeypatch.setattr(bounds.Losses, *without(slice(part, part + 1), law))
     assert proved(plan, degree, SINGLE)[1] < error
 
 
