@@ -275,6 +275,28 @@ def test_truncation_is_no_less_than_what_a_step_loses(mass, degree, ratio) -> No
         assert lost <= 1.01 * sqrt(energy)
 
 
+@pytest.mark.parametrize("ratio", [1, -3])
+def test_what_a_body_sends_is_as_wrong_as_its_velocity(ratio) -> None:
+    """Where T_k arrives: in squares that count c_0 twice, and in absolute values."""
+    plan = march_plan(lower(body("10", ratio=ratio)))
+    joint, scheme, degree, u = only_body(plan), scheme_of(plan, 9), 9, 2.0**-53
+    losses = Losses(plan, MarchTables(plan, degree, DOUBLE), scheme, u, 0.0)
+    number, group = next((n, each) for n, each in enumerate(scheme.groups) if isinstance(each, Bodies))
+    ports, of = len(joint.space.ports), body_operator(joint.space.rate * plan.panels[0].length, degree)
+    lost = counted(*in_numpy(of, ports + 4))[:-1, : degree + 1]
+    sizes = np.abs(group.ratio[0]) * group.push[0, 0] * u
+    for k in (0, 1, 5, degree):
+        a = np.zeros((1, 1, ports, degree + 1))
+        a[0, 0, 0, k] = 1
+        squares, sums, *_ = losses._of_bodies(
+            group, losses._bodies[number, 0], a, 0 * a, np.zeros((1, 1, 1, 3)), np.zeros((1, 1, 1))
+        )
+        norm = np.sqrt(np.sum(lost[:, k] ** 2) + lost[0, k] ** 2)
+        assert np.all((sizes * norm) ** 2 <= squares[0, 0])
+        assert np.all(squares[0, 0] <= (3 * sizes * norm + 3 * u) ** 2)
+        assert np.all(sizes * np.sum(lost[:, k]) <= sums[0, 0])
+
+
 def test_what_rounding_hides_of_a_last_coefficient_counts_as_missed() -> None:
     """q_d - p_d is told from what is sent and arrives, which has lost some units of rounding of it, or made some."""
     plan = march_plan(lower(body("10/3")))

@@ -280,7 +280,7 @@ def test_rounding_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyP
 
 @pytest.mark.parametrize(
     ("law", "heavy", "part"),
-    [("bodies", Fraction(1, 10**10), 0), ("bodies", Fraction(10**10), 2), ("blocks", Fraction(10**10), 2)],
+    [("blocks", Fraction(1, 10**10), 0), ("bodies", Fraction(10**10), 2), ("blocks", Fraction(10**10), 2)],
 )
 def test_rounding_of_what_is_sent_or_kept_is_seen(
     law: str, heavy: Fraction, part: int, monkeypatch: pytest.MonkeyPatch
