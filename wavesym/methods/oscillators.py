@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from wavesym.errors import UnservedError
 from wavesym.numbers.arrays import Array
@@ -77,10 +78,7 @@ class CondensedSystem:
         """x is the displacement of a mode beside what springs do as they follow a prescribed motion, its velocity
         over `speed`, and its load and three derivatives.
         """
-        root = np.linalg.cholesky(self.mass)
-        whitened = np.linalg.solve(root, np.linalg.solve(root, self.stiffness).T)
-        squares, shapes = np.linalg.eigh((whitened + whitened.T) / 2)
-        shapes = np.linalg.solve(root.T, shapes)
+        squares, shapes = _modes(self.mass, self.stiffness)
         strained = squares > len(squares) * np.finfo(float).eps * squares[-1:]
         frequency = np.sqrt(np.where(strained, squares, 0.0))
         damping = 2 * frequency * ratios(frequency)
@@ -121,6 +119,21 @@ class CondensedSystem:
         accelerations = (matrix @ matrix)[:count, np.newaxis]
         shapes = np.eye(count, len(matrix))[:, np.newaxis]
         return Oscillators(matrix[np.newaxis], jumps, shapes, np.zeros_like(self.influence), accelerations)
+
+
+def _modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """The squares of the frequencies, ascending, and the shapes (coordinates, modes), of mass 1.
+
+    What is solved has 1/(square + `slow`) for eigenvalues, of which rounding spares the large ones: else it leaves
+    every square wrong by a part of the largest one, and of many elements the slow modes are those that count.
+    """
+    if not len(mass):
+        return np.zeros(0), np.zeros((0, 0))
+    # about the slowest of as many equal masses in a row
+    slow = (np.max(np.diag(stiffness) / np.diag(mass)) or 1.0) / len(mass) ** 2
+    inverses, shapes = eigh(mass, stiffness + slow * mass)
+    inverses, shapes = inverses[::-1], shapes[:, ::-1]
+    return 1 / inverses - slow, shapes / np.sqrt(inverses)
 
 
 def condense(mass: Array, damping: Array, stiffness: Array, influence: Array) -> CondensedSystem:

@@ -218,12 +218,18 @@ class Problem:
         return self.ratios.ravel()
 
     def rigid_motion(
-        self, point: int, *, bars: bool = False, springs: bool = False, held: Collection[int] = ()
+        self,
+        point: int,
+        *,
+        bars: bool = False,
+        springs: bool = False,
+        held: Collection[int] = (),
+        parting: Array | None = None,
     ) -> tuple[Array, Array]:
         """How fast points (points,) and bars (bars,) move with a point of velocity 1, all contacts closed.
 
-        With `bars` these are rigid, with `springs` springs and dashpots are, too. Other points that are `held`,
-        and what is not reached, have velocity 0.
+        Or those of `parting` alone. With `bars` these are rigid, with `springs` springs and dashpots are, too. Other
+        points that are `held`, and what is not reached, have velocity 0.
         """
         points, rods = np.zeros(self.points), np.zeros(len(self.delays))
         linked = (self.damping != 0) | (self.stiffness != 0)
@@ -232,7 +238,7 @@ class Problem:
             here = waiting.pop()
             found = [
                 (int(o), -row[here] / row[o] * points[here])
-                for row in self.parting
+                for row in (self.parting if parting is None else parting)
                 for o in np.flatnonzero(row)
                 if row[here] != 0
             ]

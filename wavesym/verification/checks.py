@@ -108,8 +108,8 @@ def _doubles(tau: float) -> tuple[float, float, float, float]:
 
 CHECKS = (
     Check(
-        "Damped modes: finite elements, N, 2N and 4N in the shortest rod, extrapolated. Allowed: the difference from\n"
-        "what N and 2N extrapolate to. Differences are from the last:",
+        "Damped modes: finite elements, N, 2N and 4N in the shortest rod, extrapolated. Allowed: twice the difference\n"
+        "from what N and 2N extrapolate to. Differences are from the last:",
         elements,
     ),
     Check(

@@ -5,7 +5,7 @@ An integration is refined until it tells its own error. It judges the reference,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -23,11 +23,12 @@ from wavesym.methods.network_problem import linear_problem
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
-from wavesym.verification.midpoint import LATE, Instants, MidpointGrid
+from wavesym.verification.link_pulls import LinkPulls
+from wavesym.verification.midpoint import LATE, Instants, LinkMethod, MidpointGrid
 from wavesym.verification.outcome import Integration, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, corner_problem, match_changes
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
-from wavesym.verification.return_mapping import REACH, integrate_differences
+from wavesym.verification.return_mapping import REACH, ReturnMapping
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -179,7 +180,7 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
         return refused_outcomes(known, "to", start)
     rule: Rule = "extrapolated" if start.grid.is_aligned and not start.corner_changes else "wandering"
     rule = "late" if start.grid.problem.laws else rule
-    return start.outcomes(known, "midpoint rule", rule, MidpointGrid.integrate)
+    return start.outcomes(known, "midpoint rule", rule, LinkPulls)
 
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
@@ -190,12 +191,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     start = coarsest_start(known, REACH)
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
-    return start.outcomes(
-        known,
-        "central differences",
-        "late",
-        lambda grid, instants: integrate_differences(grid.problem, grid.step, instants),
-    )
+    return start.outcomes(known, "central differences", "late", ReturnMapping)
 
 
 @dataclass(frozen=True)
@@ -212,9 +208,9 @@ class Start:
         known: ReferenceOutputs,
         name: str,
         rule: Rule,
-        integrate: Callable[[MidpointGrid, Instants], tuple[Array, Array]],
+        links: LinkMethod,
     ) -> list[Outcome]:
-        """A row for each output of a method that steps through a grid."""
+        """A row for each output, by what links pull."""
         grid, problem, instants = self.grid, self.grid.problem, self.instants
         taus = [grid.tau(k) for k in instants.tolist()]
         truths = [
@@ -223,7 +219,7 @@ class Start:
         ]
 
         def solve(finer: int) -> list[Solution]:
-            values, roundoff = integrate(grid.finer(finer), finer * instants)
+            values, roundoff = grid.finer(finer).integrate(finer * instants, links)
             outputs = problem.outputs(values, np.array(taus))
             return [Solution(*each) for each in zip(outputs, np.abs(problem.weights) @ roundoff, strict=True)]
 
@@ -276,7 +272,7 @@ def _grid(model: Model) -> MidpointGrid:
 def elements(known: ReferenceOutputs) -> list[Outcome]:
     """Finite elements of consistent mass, damped by the same ratios, where modes are damped; nothing else knows these.
 
-    Their error is a series in the square of their length. There is no truth to compare them with.
+    Their error is a series in the square of their length, but where fronts bend. There is no truth to compare with.
     """
     model = known.independent or known.whole
     if model.damping is None:
@@ -300,7 +296,7 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
     names = [probe.name for probe in model.probes]
     taus = np.minimum(history(1)[0], model.horizon()).tolist()
     method = Integration(
-        "elements", _COARSEST_ELEMENTS, solve, is_affordable, "extrapolated", [taus] * len(names), clear=True
+        "elements", _COARSEST_ELEMENTS, solve, is_affordable, "smeared", [taus] * len(names), clear=True
     )
     return method.outcomes(model.name, names, [None] * len(names), {})
 
@@ -344,14 +340,12 @@ class CornerHistory:
         return CornerHistory([each for each in self.changes if each[0].corner == corner], self.shortest)
 
     def fit(self, claimed: Sequence[ContactEvent], until: float) -> CornerHistory:
-        """Without what is faint, and what may come after the end, where that is not claimed."""
-        sure = [each for each in self.changes if not each[0].faint]
-        for changes in (self.changes, sure):
-            for kept in (changes, [each for each in changes if each[0].tau + each[1] < until]):
-                found = replace(self, changes=kept)
-                if found._fits(claimed, found.visible(claimed)):
-                    return found
-        return replace(self, changes=sure)
+        """Without what may come after the end, where that is not claimed."""
+        for kept in (self.changes, [each for each in self.changes if each[0].tau + each[1] < until]):
+            found = replace(self, changes=kept)
+            if found._fits(claimed, found.visible(claimed)):
+                return found
+        return self
 
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
         """The numbers of events that it can have seen: without those at the start or that hardly last, if it must."""

@@ -115,9 +115,6 @@ class LinkPulls:
         self._gaps: list[float] = problem.gaps.tolist()
         self._laws = [self._link(law, inverse) for law in problem.laws]
         self._open = problem.gaps > 0
-        # how fast a step turns masses beside a contact back for each unit of its push; the push; and when it parted
-        self._turned = [_TURNED * h * problem.lightness(row) for row in problem.parting]
-        self._hardest, self._parted = [0.0] * len(self._gaps), dict[int, int]()
         self.changes: list[BranchChange] = []
 
     def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
@@ -142,6 +139,29 @@ class LinkPulls:
         self._record_branches((longer + self._h * (self._rows @ v)).tolist(), step)
         return np.asarray(v)
 
+    def stop(self, after: Array, v: Array) -> Array:
+        """The velocities of points at the end of a step, `after` it for all that is known of `v`, the mean ones in it.
+
+        A mass that a contact presses on a joint without mass comes to rest as friction stops that: what goes on after
+        would leave it with what was lost in the step, the other way.
+        """
+        problem, gone = self._problem, np.where(self._problem.mass > 0, after, v)
+        for link in self._laws if any(pull < 0 for pull in self._pulls[: len(self._gaps)]) else []:
+            if not isinstance(link, _Friction) or link.inertia:
+                continue
+            row, pressed = link.law.row, np.array(self._pulls[: len(self._gaps)]) < 0
+            stuck = link.law.limit(link.trial) == link.trial
+            for joint in np.flatnonzero((row != 0) & (problem.mass == 0) & problem.is_free).tolist():
+                ratios = problem.rigid_motion(joint, parting=problem.parting[pressed])[0]
+                others = float(row @ gone) - row[joint] * v[joint]
+                for mass in np.flatnonzero((ratios != 0) & (problem.mass > 0)).tolist():
+                    ratio = ratios[mass] / row[joint]
+                    slides = after[mass] / ratio + others
+                    turns = stuck or slides * (row @ v) < 0
+                    if turns and problem.mass[mass] * ratio**2 * abs(slides) <= _TURNED * self._h * link.law.rest:
+                        after[mass] = -others * ratio
+        return after
+
     def _mean(self, k: int, rate: float, longer: float) -> tuple[float, float]:
         contacts, compliance = len(self._gaps), self._compliance[k][k]
         if k >= contacts:
@@ -155,18 +175,9 @@ class LinkPulls:
         length, force = problem.worth
         for k, number in enumerate(problem.contacts):
             apart, push = self._gaps[k] + longer[k], -self._pulls[k]
-            self._hardest[k] = max(self._hardest[k], push)
             if push > _SIGN * force if self._open[k] else apart > _SIGN * length:
                 self._open[k] ^= True
-                closed = int(not self._open[k])
-                self.changes.append(BranchChange(number, 1 - closed, closed, step, not closed or k in self._parted))
-                self._parted.pop(k, None)
-                if not closed:
-                    self._parted[k] = len(self.changes) - 1
-            if k in self._parted:
-                opening = self.changes[self._parted[k]]
-                if apart > (step + 1 - opening.step) * self._h * self._turned[k] * self._hardest[k]:
-                    self.changes[self._parted.pop(k)] = opening._replace(faint=False)
+                self.changes.append(BranchChange(number, int(self._open[k]), int(not self._open[k]), step))
         for moving in self._laws:
             law, before = moving.law, moving.branch
             moving.finish()

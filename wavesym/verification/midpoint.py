@@ -1,34 +1,32 @@
-"""Waves by their characteristics, and the implicit midpoint rule at points: a complementarity problem in every step.
+"""The midpoint rule at points that links with corners join: a complementarity problem in every step.
 
-Waves are known by their means over steps; a rod sends on what came in as many steps ago as it has cells. With q and u
-at the start of a step, v the mean velocity in it and a the means of what arrives,
-
-    (2 mass/h + damping + sum of ratio^2 impedance + stiffness h/2) v
-        = 2 mass/h q - stiffness u + sum of 2 ratio impedance a + loads + what links with corners pull,
-
-q goes on to 2 v - q and u to u + h v. What links with corners pull depends on v (`link_pulls.py`). Nothing is looked
-for inside a step, and outputs are read where no front is within one. Errors fall as its square, and as the step where a
-law changes.
+`wavesym/methods/grid.py` has the steps; what links with corners pull depends on the mean velocities in one
+(`link_pulls.py`). Nothing is looked for inside a step, and outputs are read where no front is within one. Errors fall
+as its square, and as the step where a law changes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from math import ceil, inf, lcm
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
+from wavesym.methods.grid import Links, MidpointRule, WaveMotion
 from wavesym.numbers.arrays import Array
-from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
+from wavesym.numbers.doubles import fraction
 from wavesym.verification.link_pulls import LinkPulls
 from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_all
 
 Instants = NDArray[np.int_]
+L = TypeVar("L", bound=Links)
+LinkMethod = Callable[[CornerProblem, Array, float], Links]
+"""What links with corners pull, of a problem, from the inverse of a step's matrix and the step."""
 
 _STEPS_WITHOUT_RODS = 64
 
@@ -43,9 +41,6 @@ _FINEST_ALIGNED = 128
 
 # steps before and after an instant that what is read there rests on
 _REACH = 1
-
-# so many roundings of a step are kept for good
-_ROUNDINGS = 8
 
 # points and instants closer than this are the same, in doubles
 _SAME = 1e-6
@@ -153,8 +148,9 @@ class MidpointGrid:
 
     def changes(self, until: float) -> tuple[Change, ...]:
         """What happens at corners by tau = `until` and stays so for some steps: the rest is what fronts do."""
+        _, links = self._solve(int(until / float(self.step)) + 2, LinkPulls)
         kept: dict[int, list[BranchChange]] = {}
-        for change in self._motion(int(until / float(self.step)) + 2).changes:
+        for change in links.changes:
             here = kept.setdefault(change.corner, [])
             if here and change.step - here[-1].step < LATE:
                 last = here.pop()
@@ -162,96 +158,27 @@ class MidpointGrid:
             if change.before != change.after:
                 here.append(change)
         return tuple(
-            Change(corner, self.problem.happens(change), float(change.step * self.step), change.faint)
+            Change(corner, self.problem.happens(change), float(change.step * self.step))
             for corner in sorted(kept)
             for change in kept[corner]
         )
 
-    def integrate(self, instants: Instants) -> tuple[Array, Array]:
+    def integrate(self, instants: Instants, method: LinkMethod = LinkPulls) -> tuple[Array, Array]:
         """The readings (readings, instants) at ascending instants off fronts, and what rounding may add to each."""
-        motion = self._motion(int(instants[-1]) + 2)
+        motion, _ = self._solve(int(instants[-1]) + 2, method)
         taus: Array = float(self.step) * instants.astype(np.float64)
         values = np.array([motion.evaluate(reading, taus) for reading in self.problem.readings])
         roundoff = np.array([motion.roundoff(reading) for reading in self.problem.readings])
         return values.reshape(-1, len(instants)), roundoff
 
-    def _motion(self, steps: int) -> _Motion:
-        motion = _Motion(self, steps)
-        for step in range(steps):
-            motion.advance(step)
-        return motion
+    def _solve(self, steps: int, method: Callable[[CornerProblem, Array, float], L]) -> tuple[WaveMotion, L]:
+        h, lags = float(self.step), np.array([int(delay / self.step) for delay in self.problem.delays], dtype=int)
+        rule = MidpointRule(self.problem, h, steps)
+        links = method(self.problem, rule.inverse, h)
+        move = rule.linked(links) if len(self.problem.contacts + self.problem.laws) else rule.linear()
+        return WaveMotion(self.problem, lags, h, steps, move), links
 
 
 def _offset(problem: CornerProblem, reading: Gauge) -> Fraction:
     """How long a wave takes from the left end of its bar to where a reading is."""
     return Fraction(0) if reading.point is not None else fraction(reading.place) * problem.delays[reading.rod - 1]
-
-
-class _Motion:
-    """What is sent from the ends of bars, with the velocities of points behind that, step by step."""
-
-    def __init__(self, grid: MidpointGrid, steps: int) -> None:
-        problem = self._problem = grid.problem
-        h = self._h = float(grid.step)
-        times: Array = h * np.arange(steps + 1, dtype=np.float64)
-        self._ends, self._middles = times, times[:-1] + h / 2
-        self._lags = np.repeat(np.array([int(delay / grid.step) for delay in problem.delays], dtype=int), 2)
-        self._late, self._slopes = np.repeat(problem.delay, 2), np.repeat(problem.start_slope, 2)
-        self._slowest = max(self._lags, default=0)
-        self._beyond = np.arange(2 * len(problem.delays)) ^ 1
-        self._start_waves = problem.start_waves.ravel()[self._beyond]
-        self._inertia, self._incidence = 2 * problem.mass / h, 2 * problem.incidence
-        self._sent = np.zeros((steps, 2 * len(problem.delays) + problem.points))
-        self._u, self._q = np.zeros(problem.points), problem.velocity.copy()
-        self._loads = problem.load_means(times[:-1], times[1:])
-        self._begun = problem.loads(times[:-1])
-        self._impedance = np.repeat(problem.impedance, 2)
-        matrix: Array = np.diag(2 * problem.mass / h + problem.incidence**2 @ self._impedance)
-        matrix += problem.damping + h / 2 * problem.stiffness
-        self._prescribed = list(problem.prescribed_points)
-        matrix[self._prescribed] = np.eye(problem.points)[self._prescribed]
-        self._inverse: Array = np.linalg.inv(matrix).astype(np.float64)
-        self._links = LinkPulls(problem, self._inverse, h)
-        self.changes = self._links.changes
-
-    def advance(self, step: int) -> None:
-        """One step."""
-        problem, h, u = self._problem, self._h, self._u
-        came: Array = self._sent[np.maximum(step - self._lags, 0), self._beyond]
-        if step < self._slowest:
-            at_start = self._start_waves + self._slopes * ((step + 0.5) * h - self._late / 2)
-            came = np.where(step < self._lags, at_start, came)
-        acting = self._inertia * self._q - problem.stiffness @ u + self._loads[step]
-        acting += self._incidence @ (self._impedance * came)
-        if prescribed := self._prescribed:
-            acting[prescribed] = self._loads[step, prescribed]
-            self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
-        v = self._links.settle(self._inverse @ acting, self._q, u, step)
-        self._u, self._q = u + h * v, 2 * v - self._q
-        self._sent[step, : len(came)] = problem.incidence.T @ v - came
-        self._sent[step, len(came) :] = v
-
-    def evaluate(self, reading: Gauge, taus: Array) -> Array:
-        """A strain, a velocity, a displacement or an acceleration at instants."""
-        waves = self._problem.waves(reading)
-        parts = [weight * self._wave(end, taus, float(late), reading.order) for end, weight, late in waves]
-        return np.asarray(np.sum(parts, axis=0))
-
-    def roundoff(self, reading: Gauge) -> float:
-        """What rounding may have added to a reading: it adds up over steps, and no point amplifies it."""
-        largest = float(np.max(np.abs(self._sent), initial=0.0))
-        scale = {-1: float(self._ends[-1]), 0: 1.0, 1: 2 / self._h}[reading.order]
-        slow = float(self._problem.speed[reading.rod - 1]) if reading.quantity == "strain" else 1.0
-        return _ROUNDINGS * float(UNIT_ROUNDOFF) * len(self._sent) * largest * scale / slow
-
-    def _wave(self, end: int, taus: Array, late: float, order: int) -> Array:
-        """What was sent from an end so long ago, its derivative (`order` 1), or its integral from tau = 0 (-1)."""
-        times = {-1: self._ends, 0: self._middles, 1: self._ends[1:-1]}[order]
-        known = {-1: self._sums, 0: self._sent, 1: np.diff(self._sent, axis=0) / self._h}[order]
-        found, held = np.interp(taus - late, times, known[:, end]), self._problem.held_part(end, taus, late, order)
-        return held + found if order < 0 else np.where(taus < late, held, found)
-
-    @cached_property
-    def _sums(self) -> Array:
-        """The integrals of what is sent, at the ends of steps."""
-        return np.concatenate([np.zeros((1, self._sent.shape[1])), self._h * np.cumsum(self._sent, axis=0)])

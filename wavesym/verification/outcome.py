@@ -126,9 +126,10 @@ class Truth:
     scale: float
 
 
-Rule = Literal["plain", "extrapolated", "wandering", "late"]
-"""How errors fall: at least as the step does; as a series in its square; in two halvings by a half; or not even that,
-as steps are late by a part of themselves that is another one on each grid."""
+Rule = Literal["plain", "extrapolated", "smeared", "wandering", "late"]
+"""How errors fall: at least as the step does; as a series in its square; so but where fronts bend, as the step to the
+power 2/3; in two halvings by a half; or not even that, as steps are late by a part of themselves that is another one on
+each grid."""
 
 
 @dataclass(frozen=True)
@@ -162,12 +163,12 @@ class Refinement:
             return float(np.max(np.abs(difference), initial=0.0)) / size
 
         best, between = quarter, largest(quarter - half)
-        if rule == "extrapolated":
+        if rule in ("extrapolated", "smeared"):
             best = quarter + (quarter - half) / 3
             between = largest(best - half - (half - coarse) / 3)
         elif rule in ("wandering", "late"):
             between += largest(half - coarse)
-        if rule == "late":
+        if rule in ("smeared", "late"):
             between *= 2
         right = truth.values if truth else best
         errors = tuple(largest(values - right) for values in (coarse, half, quarter))

@@ -24,15 +24,11 @@ from wavesym.numbers.doubles import nearest
 
 @dataclass(frozen=True)
 class Change:
-    """What happens at tau at the link with this number among those with corners: a contact opens, a spring yields.
-
-    It is `faint` where steps do not tell it from nothing.
-    """
+    """What happens at tau at the link with this number among those with corners: a contact opens, a spring yields."""
 
     corner: int
     kind: str
     tau: float
-    faint: bool = False
 
 
 KnownChanges = list[tuple[Change, float]]
@@ -51,16 +47,12 @@ def match_changes(finer: Sequence[Change], coarser: Sequence[Change]) -> KnownCh
 
 
 def match_all(found: Sequence[Sequence[Change]]) -> KnownChanges | None:
-    """What happens on three grids, ever finer ones, and how well it is known when; None where it is not the same.
-
-    What is faint need not happen on all of them.
-    """
-    sure = [[change for change in changes if not change.faint] for changes in found]
-    for coarse, half, quarter in (found, sure):
-        first, then = match_changes(quarter, half), match_changes(half, coarse)
-        if first is not None and then is not None:
-            return [(change, after + before) for (change, after), (_, before) in zip(first, then, strict=True)]
-    return None
+    """What happens on three grids, ever finer ones, and how well it is known when; None where it is not the same."""
+    coarse, half, quarter = found
+    first, then = match_changes(quarter, half), match_changes(half, coarse)
+    if first is None or then is None:
+        return None
+    return [(change, after + before) for (change, after), (_, before) in zip(first, then, strict=True)]
 
 
 class OneSidedStep(NamedTuple):
@@ -174,16 +166,12 @@ class LinkLaw:
 
 
 class BranchChange(NamedTuple):
-    """A link with a corner goes from one branch to another in a step: 1 is a closed contact, else see `LinkLaw`.
-
-    It is `faint` where a contact parts no faster than what comes to rest within a step is turned back.
-    """
+    """A link with a corner goes from one branch to another in a step: 1 is a closed contact, else see `LinkLaw`."""
 
     corner: int
     before: int
     after: int
     step: int
-    faint: bool = False
 
 
 @dataclass(frozen=True)
@@ -234,12 +222,7 @@ class CornerProblem(Problem):
     def sliding_mass(self, law: LinkLaw) -> float:
         """The mass that a force against its sliding slows down; 0 where a side has none."""
         free = (law.row != 0) & self.is_free
-        return 1 / self.lightness(law.row) if np.all(self.mass[free] > 0) else 0.0
-
-    def lightness(self, row: Array) -> float:
-        """How much faster a force of 1 between points, by `row`, makes those of them grow apart that have a mass."""
-        heavy = self.is_free & (self.mass > 0)
-        return float(np.sum(row[heavy] ** 2 / self.mass[heavy]))
+        return float(1 / np.sum(law.row[free] ** 2 / self.mass[free])) if np.all(self.mass[free] > 0) else 0.0
 
     @cached_property
     def soonest(self) -> float:
