@@ -51,8 +51,13 @@ def symbolic(chain: Chain) -> SymbolicChain:
 
 def generic(system: System, m: int) -> SymbolicChain:
     """The chain of m rods whose parameters are all different, and no rates meet."""
+    return symbolic(unlike_chain(system, m))
+
+
+def unlike_chain(system: System, m: int) -> Chain:
+    """The same in numbers."""
     numbers = {name: {i: _DIFFERENT[name](i) for i in indices} for name, indices in system.indices(m).items()}
-    return symbolic(Chain(system, m, Parameters(**numbers)))
+    return Chain(system, m, Parameters(**numbers))
 
 
 # any numbers will do of which no two, and no two sums below, are equal

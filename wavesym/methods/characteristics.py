@@ -28,23 +28,6 @@ from wavesym.running.native import FAST, address, library
 _SOURCE = Path(__file__).with_suffix(".c")
 _POINTS = 24  # of Gauss
 
-_COUNTS = ("points", "ends", "panels", "samples", "events", "terms", "outputs", "windows", "depth")
-_TABLES = (
-    *("massless", "stencils", "velocity", "before", "start", "step", "steps", "first"),
-    *("first_end", "end_of", "lag", "ratio", "weight", "event_window", "event_panel", "event_point", "event_load"),
-    *("term_output", "term_wave", "term_integral", "term_first", "term_sign", "term_lag", "term_base"),
-)
-
-
-class _Grid(ctypes.Structure):
-    """`struct grid`."""
-
-    _fields_ = [
-        *((name, ctypes.c_size_t) for name in _COUNTS),
-        ("window", ctypes.c_double),
-        *((name, ctypes.c_void_p) for name in _TABLES),
-    ]
-
 
 def unlinked_problem(model: Model) -> Problem:
     """State the problem of a model whose points are masses, dashpots and ends of bars alone.
@@ -63,9 +46,13 @@ def unlinked_problem(model: Model) -> Problem:
 def _solve(order: int, problem: Problem, resolution: float) -> Evaluate:
     compiled = library(_SOURCE.read_text(encoding="utf-8"), (*FAST, f"-DPOINTS={order}"))
     sizes, tables = _tables(order, problem, resolution)
-    grid = _Grid(
-        *(sizes[name] for name in _COUNTS), float(problem.measure), *(address(tables[name]) for name in _TABLES)
-    )
+    numbers = {**sizes, "window": float(problem.measure)} | {name: address(table) for name, table in tables.items()}
+    kinds = [(name, ctypes.c_size_t) for name in sizes] + [("window", ctypes.c_double)]
+
+    class Grid(ctypes.Structure):
+        _fields_ = [*kinds, *((name, ctypes.c_void_p) for name in tables)]
+
+    grid = Grid(**numbers)
     waves = sizes["ends"] + sizes["points"]
     work = np.empty(sizes["samples"] * (waves * (sizes["depth"] + 1) + 1) + 4 * sizes["points"] + sizes["terms"])
 
@@ -81,27 +68,27 @@ def _solve(order: int, problem: Problem, resolution: float) -> Evaluate:
 
 
 def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, int], dict[str, NDArray[np.generic]]]:
-    """The sizes and tables of `struct grid`, `resolution` steps in a unit of tau or more."""
+    """The sizes and tables of `struct grid` in its order, `resolution` steps in a unit of tau or more."""
     measure = float(problem.measure)
     cuts = sorted({0, 1} | {event.time / problem.measure % 1 for event in problem.events})
     lengths = measure * np.diff(np.array([float(cut) for cut in cuts]))
     steps = np.maximum(order, np.rint(lengths * resolution)).astype(np.uintp)
     lags = np.repeat([int(delay / problem.measure) for delay in problem.delays], 2)
     depth = int(max(lags)) + 1
-    impedance = np.repeat(problem.impedance, 2)
-    ends = problem.ends.ravel()
+    impedance, ends, ratios = np.repeat(problem.impedance, 2), problem.end_points, problem.end_ratios
     free = ~np.isin(np.arange(problem.points), problem.prescribed_points)
-    ratios = problem.ratios.ravel()
-    before = problem.start_waves.ravel()
+    before = np.append(problem.start_waves.ravel(), np.zeros(problem.points))
     gamma = np.where(free, np.diag(problem.damping) + problem.incidence**2 @ impedance, 1.0)
     massless = ~free | (problem.mass == 0)
     over = np.where(massless, gamma, 1.0)
     terms = _terms(problem)
+    output, wave, integral, sign, lag = np.array(terms).reshape(-1, 5).T
     events = sorted(
         (int(when), bisect_right(cuts, when % 1) - 1, event.point, *event.coefficients)
         for event in problem.events
         for when in (event.time / problem.measure,)
     )
+    window, panel, point, *loads = np.array(events).reshape(-1, 6).T
     by_point = np.argsort(ends, kind="stable")
     sizes = {
         "points": problem.points,
@@ -114,50 +101,43 @@ def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, 
         "windows": int(Fraction(problem.until) // problem.measure) + 1,
         "depth": depth,
     }
-    doubles = {
-        "stencils": np.stack([_stencils(problem.mass, gamma, step, order) for step in lengths / steps]),
-        "velocity": problem.velocity,
-        "before": np.append(before, np.zeros(problem.points)),
-        "start": np.append(0.0, np.cumsum(lengths))[:-1],
-        "step": lengths / steps,
-        "ratio": ratios,
-        "weight": np.where(free[ends], 2 * ratios * impedance, 0.0) / over[ends],
-        "event_load": np.array([np.array(event[3:]) / over[event[2]] for event in events]),
-        "term_sign": np.array([sign for *_, sign, _ in terms]),
-        "term_lag": np.array([lag for *_, lag in terms]),
-        "term_base": np.array([sign * (depth * measure - lag) for *_, sign, lag in terms])
-        * np.append(before, np.zeros(problem.points))[[wave for _, wave, *_ in terms]],
+    numbers, doubles = np.uintp, np.float64
+    tables = {
+        "massless": (massless, numbers),
+        "stencils": (np.stack([_stencils(problem.mass, gamma, step, order) for step in lengths / steps]), doubles),
+        "velocity": (problem.velocity, doubles),
+        "before": (before, doubles),
+        "start": (np.append(0.0, np.cumsum(lengths))[:-1], doubles),
+        "step": (lengths / steps, doubles),
+        "steps": (steps, numbers),
+        "first": (np.cumsum(steps + 1) - (steps + 1), numbers),
+        "first_end": (np.searchsorted(ends[by_point], np.arange(problem.points + 1)), numbers),
+        "end_of": (by_point, numbers),
+        "lag": (lags, numbers),
+        "ratio": (ratios, doubles),
+        "weight": (np.where(free[ends], 2 * ratios * impedance, 0.0) / over[ends], doubles),
+        "event_window": (window, numbers),
+        "event_panel": (panel, numbers),
+        "event_point": (point, numbers),
+        "event_load": (np.array(loads).T / over[point.astype(int), np.newaxis], doubles),
+        "term_output": (output, numbers),
+        "term_wave": (wave, numbers),
+        "term_integral": (integral, numbers),
+        "term_first": (np.diff(output, prepend=-1), numbers),
+        "term_sign": (sign, doubles),
+        "term_lag": (lag, doubles),
+        "term_base": (sign * (depth * measure - lag) * before[wave.astype(int)], doubles),
     }
-    integers = {
-        "massless": massless,
-        "steps": steps,
-        "first": np.cumsum(steps + 1) - (steps + 1),
-        "first_end": np.searchsorted(ends[by_point], np.arange(problem.points + 1)),
-        "end_of": by_point,
-        "lag": lags,
-        "event_window": np.array([window for window, *_ in events]),
-        "event_panel": np.array([panel for _, panel, *_ in events]),
-        "event_point": np.array([point for _, _, point, *_ in events]),
-        "term_output": np.array([output for output, *_ in terms]),
-        "term_wave": np.array([wave for _, wave, *_ in terms]),
-        "term_integral": np.array([integral for _, _, integral, *_ in terms]),
-        "term_first": np.diff([-1, *(output for output, *_ in terms)]),
-    }
-    tables: dict[str, NDArray[np.generic]] = {
-        name: np.ascontiguousarray(table, dtype=np.float64) for name, table in doubles.items()
-    }
-    tables |= {name: np.ascontiguousarray(table, dtype=np.uintp) for name, table in integers.items()}
-    return sizes, tables
+    return sizes, {name: np.ascontiguousarray(table, dtype=kind) for name, (table, kind) in tables.items()}
 
 
 def _terms(problem: Problem) -> list[tuple[int, int, bool, float, float]]:
     """(output, wave, whether its integral, sign, lag); waves are numbered as in `Problem.waves`."""
-    terms: list[tuple[int, int, bool, float, float]] = []
-    for output, reading in enumerate(problem.readings):
-        waves = sorted(problem.waves(reading), key=lambda wave: wave.late, reverse=True)
-        integral = reading.quantity == "displacement"
-        terms += [(output, end, integral, weight, float(late)) for end, weight, late in waves]
-    return terms
+    return [
+        (output, wave.end, reading.quantity == "displacement", wave.weight, float(wave.late))
+        for output, reading in enumerate(problem.readings)
+        for wave in sorted(problem.waves(reading), key=lambda wave: wave.late, reverse=True)
+    ]
 
 
 def _stencils(mass: Array, gamma: Array, step: float, order: int) -> Array:

@@ -55,7 +55,6 @@ _ROUNDED = 2.0**-53  # exact values are rounded once
 _ROUNDINGS = 8  # no program in single precision is made for a smaller tolerance
 _MOST_MARCHED = 400  # values of a march in C, each from tau = 0 on
 _SOME = 4  # of the instants one of so many is compared for other parameters
-_CLOSE = 1e-9  # instants of samples that are the same
 
 
 def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
@@ -188,21 +187,17 @@ def _run_c(
     with compile_files(files(program, "c"), len(model.probes), real, FLAGS) as built:
         fails = f"{model.name}: {name}: the self-test of the generated C fails"
         note = fails if program.reference and built.selftest() != 0 else ""
+        started = ProgramValues(name, taus, np.empty(0), sizes, bounds, note=note)
         if program.evaluator == "runtime":
             yield from _with_parameters(scene, known, integrals, program, built, name)
         elif program.evaluator in ("stream", "modes", "mode_sets"):
-            for stream in run_streams(scene, known, program, built, taus):
-                said = f"{model.name}: {name}, {stream.language}: a step returns {stream.status}"
-                wrong = f"{said}, lost is {stream.stated_error:.1e}" if stream.status else note
-                stated = bounds if program.has_equal_steps else [stream.stated_error] * len(bounds)
-                close = _CLOSE if program.has_equal_steps else 0.0
-                values = stream.taus, stream.values, sizes, stated, 0.0, wrong
-                yield ProgramValues(f"{name}, {stream.language}", *values, close=close, refusal=stream.refusal)
+            yield from run_streams(scene, known, program, built, started)
         else:
             some = np.arange(len(taus))
             if program.evaluator == "march":
                 some = sample_evenly(some, _MOST_MARCHED)
-            yield ProgramValues(f"{name}, C", taus[some], built(given[some].tolist()), sizes, bounds, late, note)
+            values = built(given[some].tolist())
+            yield replace(started, name=f"{name}, C", taus=taus[some], values=values, late=late)
 
 
 def _with_parameters(

@@ -16,7 +16,7 @@ from functools import cache
 from math import factorial
 from typing import NamedTuple
 
-from sympy import Expr, Integer, Rational, Symbol, cancel, exp, together
+from sympy import Expr, Integer, Matrix, Rational, Symbol, cancel, exp, together
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation
 from wavesym.derivation.delay_terms import Line, Operator, exact
@@ -193,11 +193,8 @@ def _line(line: Line) -> Expr:
 
 
 def _solution(equations: Sequence[Expr], unknowns: Sequence[Symbol]) -> tuple[list[Expr], Expr]:
-    """The solution of one linear equation for one wave, or two for two, and their determinant."""
-    slopes = [[equation.diff(unknown) for unknown in unknowns] for equation in equations]
-    rest = [-equation.subs(dict.fromkeys(unknowns, 0)) for equation in equations]
-    if len(unknowns) == 1:
-        return [rest[0] / slopes[0][0]], slopes[0][0]
-    (a, b), (c, d) = slopes
-    determinant = cancel(together(a * d - b * c))
-    return [(rest[0] * d - b * rest[1]) / determinant, (a * rest[1] - rest[0] * c) / determinant], determinant
+    """The solution of linear equations for as many waves, and their determinant."""
+    matrix = Matrix(equations).jacobian(unknowns)
+    right = -Matrix(equations).subs(dict.fromkeys(unknowns, 0))
+    determinant = cancel(together(matrix.det()))
+    return list(matrix.adjugate() * right / determinant), determinant

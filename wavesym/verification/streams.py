@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq
@@ -18,53 +18,43 @@ from wavesym.running.co_simulation import CoSimulation, compile_fmu
 from wavesym.running.compilation import CompiledLibrary, CompiledStream
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
+from wavesym.verification.outcome import ProgramValues
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
 _MOST_LOOKED = 300
+_CLOSE = 1e-9  # instants of samples that are the same
 _MIXED = "loads jump after tau = 0 and go in straight lines, and an FMU either holds them over a step or does not"
 
 
-class SteppedStream(NamedTuple):
-    """What a stream gives: in which language, instants, outputs there, the largest status, what is said to be lost.
-
-    Or why it was not stepped.
-    """
-
-    language: str
-    taus: Array
-    values: Array
-    status: int
-    stated_error: float
-    refusal: str = ""
-
-
-FedLoads = tuple[Fraction, list[float], bool]
-"""When, the loads, and whether they jump to these."""
-
-
 def run_streams(
-    scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary, taus: Array
-) -> Iterator[SteppedStream]:
+    scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary, started: ProgramValues
+) -> Iterator[ProgramValues]:
     """The stream in C, and as the FMUs that simulators take, where its numbers are doubles.
 
-    Streams of waves step to some of the taus, those of modes to multiples of their spacing.
+    Streams of waves step to some of the taus of `started`, which has no values yet, those of modes to multiples of
+    their spacing.
     """
     feed = LoadFeed(scene, known.whole, program.sources)
     own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
 
-    def step(language: str, stream: CompiledStream | CoSimulation) -> SteppedStream:
+    def step(language: str, stream: CompiledStream | CoSimulation) -> ProgramValues:
+        lost, found = 0.0, replace(started, name=f"{started.name}, {language}")
         if program.has_equal_steps:
-            found = _step_modes(known, program, feed, stream)
-            return SteppedStream(language, *found, stream.status, 0.0)
-        found = _step_waves(known, feed, stream, taus)
-        return SteppedStream(language, *found, stream.status, stream.lost)
+            taus, values = _step_modes(known, program, feed, stream)
+            found = replace(found, close=_CLOSE)
+        else:
+            taus, values = _step_waves(known, feed, stream, started.taus)
+            lost = stream.lost
+            found = replace(found, bounds=[lost] * len(found.bounds))
+        wrong = f"{known.whole.name}: {found.name}: a step returns {stream.status}, lost is {lost:.1e}"
+        return replace(found, taus=taus, values=values, note=wrong if stream.status else found.note)
 
     yield step("C", built.stream(own))
     for version in SIMULATORS if program.real.bytes == 8 else ():
         language = f"FMI {version[-1]}"
         if feed.jumps and feed.slopes:
-            yield SteppedStream(language, np.empty(0), np.empty(0), 0, 0.0, _MIXED)
+            yield replace(started, name=f"{started.name}, {language}", refusal=_MIXED)
             continue
         with compile_fmu(program, version, linear=feed.slopes) as simulation:
             yield step(language, simulation)
