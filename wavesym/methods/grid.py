@@ -66,7 +66,8 @@ class WaveMotion:
         width, flat = ends + problem.points, self._sent.ravel()
         places, slowest = beyond - lags * width, int(max(lags, default=0))
         for step in range(steps):
-            came: Array = flat[places + step * width]  # where nothing has come yet, what has not been sent: 0
+            place = places + step * width
+            came: Array = flat[place if step >= slowest else np.maximum(place, 0)]
             if step < slowest:
                 came = np.where(step < lags, at_first + slopes * ((step + 0.5) * h - late / 2), came)
             self._sent[step] = rule(step, came)

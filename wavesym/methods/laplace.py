@@ -30,25 +30,23 @@ def _transforms(problem: Problem, s: Complex) -> Complex:
 
 def _block(problem: Problem, s: Complex) -> Complex:
     # unknowns: what the ends of the bars send, left and right by turns, then the points' velocities
-    first = 2 * len(problem.delay)
-    size = first + problem.points
-    points = np.arange(first, size)
+    first = problem.ends.size
+    size, sent = first + problem.points, np.arange(first)
+    points, opposite = np.arange(first, size), sent ^ 1
     matrix = np.zeros((len(s), size, size), dtype=complex)
     known = np.zeros((len(s), size), dtype=complex)
+    impedance = np.repeat(problem.impedance, 2)
+    delay = np.exp(-np.multiply.outer(s, np.repeat(problem.delay, 2)))
+    # what is in the bars at tau = 0 and arrives at their ends
+    earlier = problem.start_waves.ravel()[opposite] * (1 - delay) / s[:, np.newaxis]
+    matrix[:, sent, sent] = 1.0
+    matrix[:, sent, opposite] = delay
+    matrix[:, :first, first:] = -problem.incidence.T
+    known[:, :first] = -earlier
+    matrix[:, first:, opposite] = -2 * problem.incidence * impedance * delay[:, np.newaxis]
     matrix[:, first:, first:] = problem.damping + problem.stiffness / s[:, np.newaxis, np.newaxis]
-    matrix[:, points, points] += np.multiply.outer(s, problem.mass)
-    known[:, first:] = problem.mass * problem.velocity
-    for bar, side, point, ratio, impedance in problem.each_end():
-        sent, opposite, at = 2 * bar + side, 2 * bar + 1 - side, first + point
-        delay = np.exp(-s * problem.delay[bar])
-        earlier = problem.start_waves[bar, 1 - side] * (1 - delay) / s  # what is in the bar at tau = 0 and arrives here
-        matrix[:, sent, sent] = 1.0
-        matrix[:, sent, opposite] = delay
-        matrix[:, sent, at] = -ratio
-        known[:, sent] = -earlier
-        matrix[:, at, opposite] -= 2 * ratio * impedance * delay
-        matrix[:, at, at] += ratio**2 * impedance
-        known[:, at] += 2 * ratio * impedance * earlier
+    matrix[:, points, points] += np.multiply.outer(s, problem.mass) + problem.incidence**2 @ impedance
+    known[:, first:] = problem.mass * problem.velocity + 2 * (earlier * impedance) @ problem.incidence.T
     for point in problem.prescribed_points:  # no force acts on it
         matrix[:, first + point, :] = 0.0
         matrix[:, first + point, first + point] = 1.0

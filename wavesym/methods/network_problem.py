@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TypeVar
 
 import numpy as np
 from flint import fmpq
@@ -18,14 +17,12 @@ from wavesym.numbers.doubles import fraction, nearest
 # a grid of steps that all delays are multiples of has at most so many in the longest
 _MOST_STEPS = 200
 
-Stated = TypeVar("Stated", bound=Problem)
-
 _SHAPES = fmpq(1, 10**4)
 """The tolerance of straight lines in place of a shape: what other methods are compared for is less sharp."""
 
 
-def network_problem(model: Model, kind: type[Stated]) -> Stated:
-    """State the problem of a model, contacts and modal damping included, as a `kind` of Problem.
+def network_problem(model: Model) -> Problem:
+    """State the problem of a model, contacts and modal damping included.
 
     Of links with other laws that have corners it has the dashpots alone, as far as they act all the time. Loads of a
     shape are straight lines.
@@ -49,7 +46,7 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
     prescribed = tuple(number for number, point in enumerate(points) if point.motion)
     for number in prescribed:
         velocity[number] = sum(event.coefficients[0] for event in events if event.point == number and event.time == 0)
-    return kind(
+    return Problem(
         mass=_numbers(points, "mass"),
         damping=damping,
         stiffness=stiffness,
@@ -92,7 +89,7 @@ def linear_problem(model: Model) -> Problem:
             f"system: {model.network.links[number].changes}, which other methods do not support; take pieces or `run`"
         )
     model.network.refuse_dead_loads()
-    return network_problem(model, Problem)
+    return network_problem(model)
 
 
 def undamped_problem(model: Model) -> Problem:

@@ -145,11 +145,6 @@ class Problem:
         held = np.minimum(taus, late)  # of this length it has come
         return held * self.held_waves(end, held / 2 - late)
 
-    def strain_at(self, bar: int, place: float) -> float:
-        """What a bar, at a part of its length, has of the strain of its waves at tau = 0."""
-        growth = 2 * self.start_slope[bar] * self.delay[bar] / self.speed[bar]
-        return float(self.start_strain[bar] + growth * (place - 0.5))
-
     def weight_strain(self, bar: int, place: float) -> float:
         """The strain that a bar has besides that of its waves, at a part of its length."""
         return float(self.gravity[bar] * self.delay[bar] / (2 * self.speed[bar]) * (1 - 2 * place))
@@ -160,12 +155,6 @@ class Problem:
         matrix = np.zeros((self.points, self.ends.size))
         matrix[self.ends.ravel(), np.arange(self.ends.size)] = self.ratios.ravel()
         return matrix
-
-    def each_end(self) -> Iterator[tuple[int, int, int, float, float]]:
-        """Each end of a bar: bar, side (0 left, 1 right), point, ratio, impedance."""
-        for bar, (ends, ratios) in enumerate(zip(self.ends.tolist(), self.ratios.tolist(), strict=True)):
-            for side in (0, 1):
-                yield bar, side, ends[side], ratios[side], float(self.impedance[bar])
 
     def load_means(self, low: Array, high: Array) -> Array:
         """The means of the loads over intervals [low, high], each (n,): shape (n, points)."""
@@ -295,8 +284,12 @@ class Problem:
         )
 
     def strain_at_start(self, reading: Gauge) -> float:
-        """What a reading has of the strain at tau = 0."""
-        return self.strain_at(reading.rod - 1, nearest(reading.place)) if reading.quantity == "strain" else 0.0
+        """What a reading has of the strain of the waves at tau = 0."""
+        if reading.quantity != "strain":
+            return 0.0
+        bar = reading.rod - 1
+        growth = 2 * self.start_slope[bar] * self.delay[bar] / self.speed[bar]
+        return float(self.start_strain[bar] + growth * (nearest(reading.place) - 0.5))
 
     def outputs(self, values: Array, taus: Array) -> Array:
         """The outputs, (outputs, n), from the values (readings, n) of the readings at `taus` (n,)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -276,4 +276,4 @@ def corner_problem(model: Model) -> CornerProblem:
     network = model.network
     contacts = tuple(k for k, number in enumerate(network.corners) if network.links[number].contact)
     laws = tuple(LinkLaw.from_network(network, k) for k in range(len(network.corners)) if k not in contacts)
-    return replace(network_problem(model, CornerProblem), contacts=contacts, laws=laws)
+    return CornerProblem(**vars(network_problem(model)), contacts=contacts, laws=laws)

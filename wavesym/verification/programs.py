@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import inf, isnan
-from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq
@@ -259,41 +258,35 @@ def _bounds(program: Program) -> list[float]:
 def _compare(known: ReferenceOutputs, integrals: Integrals, found: ProgramValues) -> Outcome:
     """The row of a program: of the output in which it comes closest to what it may be wrong by, or is wrong."""
     worst, row = -1.0, {"of": "-"}
-    exact = _exact(known, found)
-    for k, probe in enumerate(known.whole.probes):
-        size, integral = found.sizes[k], (found.integrals or integrals)[k]
+    judges = zip(_exact(known, found), found.integrals or integrals, strict=True)
+    for k, (probe, (exact, integral)) in enumerate(zip(known.whole.probes, judges, strict=True)):
+        size = found.sizes[k]
         stated, unit, parts = found.bounds[k] * size, size or 1.0, []
         cells = {"of": probe.name} | dict.fromkeys(("error", "difference", "allowed"), "-")
         cells["bound"] = format_error(stated / unit)
-        if exact:
-            error = _largest(found.values[k][exact.mine] - exact.values[k])
-            parts.append(_part(error, stated))
-            cells["error"] = format_error(error / unit)
-        if integral and len(pairs := _pairs(found.taus, np.array(integral.taus), found.close)):
-            error = _largest(found.values[k][pairs[:, 0]] - integral.values[pairs[:, 1]])
-            allowed = integral.error_bound + found.late * integral.steepest
+        for column, judge, close in (("error", exact, 0.0), ("difference", integral, found.close)):
+            if judge is None or not len(pairs := _pairs(found.taus, np.array(judge.taus), close)):
+                continue
+            error, allowed = _largest(found.values[k][pairs[:, 0]] - judge.values[pairs[:, 1]]), 0.0
+            if judge is integral:
+                allowed = judge.error_bound + found.late * judge.steepest
+                cells["allowed"] = format_error(allowed / unit)
+            cells[column] = format_error(error / unit)
             parts.append(_part(error, stated + allowed))
-            cells |= {"difference": format_error(error / unit), "allowed": format_error(allowed / unit)}
         if (part := max(parts, default=inf)) > worst:
             worst, row = part, cells
     return Outcome(found.name, row, not found.note and worst <= 1, found.note)
 
 
-class _ExactValues(NamedTuple):
-    """Exact values of each output, and at which of a program's instants they are."""
-
-    mine: NDArray[np.int_]
-    values: Sequence[Array]
-
-
-def _exact(known: ReferenceOutputs, found: ProgramValues) -> _ExactValues | None:
+def _exact(known: ReferenceOutputs, found: ProgramValues) -> Integrals:
+    """Exact values of each output at instants of a program, where there are any."""
     if found.integrals or not known.outputs or not len(found.taus):
-        return None
-    if len(pairs := _pairs(found.taus, np.array(known.taus))):
-        return _ExactValues(pairs[:, 0], [output.values[pairs[:, 1]] for output in known.outputs])
-    if known.exact is None:
-        return None
-    return _ExactValues(np.arange(len(found.taus)), [np.array(row) for row in known.exact.values(found.taus.tolist())])
+        return [None] * len(known.whole.probes)
+    taus, values = known.taus, [output.values for output in known.outputs]
+    if known.exact and not len(_pairs(found.taus, np.array(taus))):
+        taus = found.taus.tolist()
+        values = [np.array(row) for row in known.exact.values(taus)]
+    return [IntegratedOutput(taus, row, 0.0) for row in values]
 
 
 def _pairs(mine: Array, theirs: Array, close: float = 0.0) -> NDArray[np.int_]:
