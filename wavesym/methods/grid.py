@@ -135,7 +135,7 @@ class MidpointRule:
 
         return move
 
-    def linked(self, links: Links) -> PointRule:
+    def nonlinear(self, links: Links) -> PointRule:
         """The rule from tau = 0 on, with links."""
         u, q = np.zeros(self._problem.points), self._problem.velocity.copy()
 

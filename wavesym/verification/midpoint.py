@@ -175,7 +175,7 @@ class MidpointGrid:
         h, lags = float(self.step), np.array([int(delay / self.step) for delay in self.problem.delays], dtype=int)
         rule = MidpointRule(self.problem, h, steps)
         links = method(self.problem, rule.inverse, h)
-        move = rule.linked(links) if len(self.problem.contacts + self.problem.laws) else rule.linear()
+        move = rule.nonlinear(links) if len(self.problem.contacts + self.problem.laws) else rule.linear()
         return WaveMotion(self.problem, lags, h, steps, move), links
 
 
