@@ -30,7 +30,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.integrations import Start, coarsest_start
 from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.reference import known_outputs
-from wavesym.verification.return_mapping import REACH, integrate_differences
+from wavesym.verification.return_mapping import REACH, ReturnMapping
 
 HEAD = ("example", "events", "s to find them", "s of `run`", "bytes of C", "C, ns a double", "bound")
 GROWTH_HEAD = ("slips", "events", "s to find them", "ms an event")
@@ -93,7 +93,7 @@ def _refine(start: Start, model: Model, sizes: Array) -> Iterator[tuple[int, flo
     error = math.inf
     while error > min(TARGETS) and _points_moved(fine := grid.finer(finer), start.until) <= _MOST:
         begin = process_time()
-        readings, _ = integrate_differences(problem, fine.step, finer * instants)
+        readings, _ = fine.integrate(finer * instants, ReturnMapping)
         seconds = process_time() - begin
         off = np.abs(np.array(problem.outputs(readings, taus)) - true)
         error = float(np.max(np.max(off, axis=1) / sizes))
