@@ -413,6 +413,14 @@ def test_marches_that_take_long_are_refused() -> None:
     assert "the limit" in refused(building(10**8, SHORT_PULSE), CostError)
 
 
+def test_accelerations_of_bodies_under_several_loads() -> None:
+    """Each is read of its own load and of the waves that brake it."""
+    parts = [{"mass": 1, "name": "a"}, {"rod": 1}, {"mass": 2, "name": "b"}, {"rod": 1}, {"mass": 3, "name": "c"}]
+    load = [{"at": "a", "times": [0], "steps": [1]}, {"at": "b", "times": ["1/3"], "steps": [-2], "ramps": [1]}]
+    model = lower(chain_of(parts, 4, load, acceleration=["a", "b", "c"], velocity=["b"]))
+    assert np.max(missed(model, march(model))) < 1
+
+
 def test_tolerances_below_what_rounding_leaves_are_refused() -> None:
     with pytest.raises(ToleranceError, match=r"march: rounding leaves a bound of \S+ to tau = 50 for"):
         choose(lower(building(50, SHORT_PULSE, tolerance="1e-14")), "march")
@@ -429,6 +437,15 @@ def test_tolerances_below_what_rounding_leaves_are_refused() -> None:
 def test_numbers_too_small_for_their_rounding_are_refused(extreme) -> None:
     with pytest.raises(OverflowError, match="beyond double precision"):
         march(lower(building(3, **{"load": SHORT_PULSE} | extreme)), degree=9)
+
+
+@pytest.mark.parametrize(("mass", "impedance"), [(1, "1e-295"), ("1e290", 1)], ids=["push", "ratio"])
+def test_bodies_whose_numbers_are_too_small_are_refused(mass, impedance) -> None:
+    """What a thin rod pushes with; what a panel changes of the velocity of a body that is as good as fixed."""
+    parts = [{"mass": mass, "name": "b", "velocity": 1}, {"rod": 1, "impedance": impedance}]
+    scene = chain_of([*parts, {"mass": 1}, {"rod": 1}, "fixed"], 3, velocity=["b"])
+    with pytest.raises(OverflowError, match="beyond double precision"):
+        march(lower(scene), degree=9)
 
 
 def test_waves_beyond_the_reach_of_a_format_are_refused() -> None:

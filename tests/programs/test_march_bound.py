@@ -278,6 +278,18 @@ def test_rounding_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyP
     assert proved(plan, degree, SINGLE)[1] < error
 
 
+def test_rounding_of_a_load_counts_from_the_window_on_in_which_it_comes() -> None:
+    """And nothing before: what a joint between endless rods then sends is rounded, and nothing else."""
+    rods = {"rod": 1}, {"rod": "1/2", "impedance": "7/3"}
+    parts = ["absorbing", rods[0], {"joint": True, "dashpot": "1/7", "name": "a"}, rods[1], "absorbing"]
+    load = [{"at": "a", "times": [0, "16/3"], "steps": [0, "1/3"], "ramps": [0, "1/7"]}]
+    output = {"until": 8, "velocity": ["a"]}
+    scene = Scene(name="late", system={"type": "chain", "parts": parts}, load=load, output=output)
+    plan = march_plan(lower(scene), SINGLE)
+    error = apart(plan, all_windows(plan, 4, SINGLE), all_windows(plan, 4, DOUBLE))
+    assert 0 < error <= proved(plan, 4, SINGLE)[1] < 1e4 * error
+
+
 @pytest.mark.parametrize(
     ("law", "heavy", "part"),
     [("blocks", Fraction(1, 10**10), 0), ("bodies", Fraction(10**10), 2), ("blocks", Fraction(10**10), 2)],

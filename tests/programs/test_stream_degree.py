@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from flint import fmpq
 
@@ -13,6 +14,7 @@ from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import first_degree
 from wavesym.programs.request import Request
 from wavesym.programs.stream import making
+from wavesym.programs.stream.interpolation import _weights
 from wavesym.programs.stream.plan import inputs_of, stream_plan
 from wavesym.scene import Scene
 from wavesym.scene.lowering import lower
@@ -57,3 +59,11 @@ def test_steps_that_end_inside_of_panels_at_ever_new_places_are_told_of(step: st
     assert (len(inside) > 256) == bool(told)
     assert told in (said := making._beside_panels(plan, model, request))
     assert bool(said) == bool(told)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 8, 31])
+def test_integrals_of_polynomials_are_exact(count: int) -> None:
+    """Those of x^k on 0 ... 1 are 1/(k + 1), for k less than the points of the rule."""
+    x = (1 + np.cos(np.pi * (2 * np.arange(count) + 1) / (2 * count))) / 2
+    powers = np.arange(count)
+    assert _weights(count) @ x[:, None] ** powers == pytest.approx(1 / (powers + 1.0), rel=1e-12)
