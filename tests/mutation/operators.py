@@ -35,6 +35,7 @@ COSTS |= {
     "step_multiplications",
     "step_operations",
     "table_bytes",
+    "turning",
 }
 TEXTS = {"summary", "shortfall", "options", "refuse_unknown", "suitable_spacing"}
 TEXTS |= {"check_points"}  # and where a self-test looks

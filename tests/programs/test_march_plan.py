@@ -7,6 +7,7 @@ from itertools import pairwise
 import pytest
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.numbers.doubles import rational
 from wavesym.programs.march.plan import LoadEvent, MarchOutput, OutputTerm, Panel, Stretch, largest_number, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
@@ -173,3 +174,11 @@ def test_stretches_cover_the_window_once(delay, panels, expected, step) -> None:
     assert found == tuple(Stretch(step * exact(start), back, p) for start, back, p in expected)
     ends = [*(stretch.start for stretch in found[1:]), step]
     assert all(s.start + panels[s.panel].length >= end > s.start for s, end in zip(found, ends, strict=True))
+
+
+@pytest.mark.parametrize(("or_pieces", "instead"), [(True, "take pieces or modes"), (False, "take modes")])
+def test_a_chain_without_rods_is_refused_with_what_serves_it(or_pieces, instead) -> None:
+    parts = [{"mass": 1, "name": "a", "velocity": 1}, {"spring": 1}, {"mass": 1}]
+    model = lower(Scene(name="made", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": ["a"]}))
+    with pytest.raises(UnservedError, match=f"no rod, .*; {instead}$"):
+        march_plan(model, or_pieces=or_pieces)
