@@ -13,11 +13,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
 from tests.support.drives import every, exact
 from tests.support.generated import files, numpy_text, program_files
 from tests.support.marches import asked
+from wavesym.numbers.doubles import not_below
 from wavesym.numbers.reals import DOUBLE, REALS, SINGLE
 from wavesym.programs.making import make
 from wavesym.programs.march.evaluator import march
@@ -102,6 +104,20 @@ def test_c_is_numpy_and_sample_is_eval(name) -> None:
             single = program([tau0 + k * dtau for k in range(count)])
             np.testing.assert_array_equal(sampled, single)
             assert status == int(np.isnan(single).any())
+
+
+def test_a_window_begins_at_its_first_number_whatever_division_makes_of_it() -> None:
+    """In doubles (27/91) / (1/91) is less than 27. A wave of 1 comes there at its instant, and is not there before."""
+    parts = [{"motion": "velocity", "name": "a"}, {"rod": "1/91"}, {"joint": True}, {"rod": "90/91"}, "absorbing"]
+    places = (27, 54)
+    step = [{"at": "a", "times": [0], "steps": [1]}]
+    model = lower(scene({"type": "chain", "parts": parts}, step, until=1, velocity=[f"{k}/91" for k in places]))
+    arrives = [not_below(fmpq(k, 91)) for k in places]
+    assert [int(tau / (1 / 91)) for tau in arrives] == [26, 53]
+    with compile_files(program_files(model, march(model), "c"), len(model.probes)) as program:
+        at, before = program(arrives), program([np.nextafter(tau, 0) for tau in arrives])
+    np.testing.assert_allclose(np.diag(at), 1, rtol=1e-14)
+    assert np.abs(np.diag(before)).max() == 0
 
 
 @dataclass(frozen=True)
