@@ -39,6 +39,10 @@ TESTS = ("programs", "numbers", "verification/test_properties.py")
 TESTS += tuple(f"exact/test_{name}.py" for name in ("ball", "collision", "motion", "reference", "signal"))
 TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_arrivals.py")
 TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_short_panels", "selftest"))
+TESTS += ("exact/test_enclosure.py",)
+# run too for what is changed where a path has this: tests of the programs that are built of it
+OWN = {"elimination": ("runtime", "stream"), "runtime": ("runtime",), "stream": ("stream",)}
+OWN |= {"mode_sets": ("mode_sets",), "modes/": ("modes",)}
 COPIED = ("wavesym", "templates", "tests", "examples", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
 --hypothesis-profile=first_failure -o faulthandler_exit_on_timeout=true "$@" """
@@ -126,6 +130,8 @@ def related(file: str) -> list[str]:
     """The files of tests, those first whose names have most in common with that of a mutated file."""
     given = [ROOT / "tests" / name for name in TESTS]
     files = [path for test in given for path in (sorted(test.rglob("test_*.py")) if test.is_dir() else [test])]
+    own = {name for part, names in OWN.items() if part in file for name in names}
+    files += [path for name in sorted(own) for path in sorted((ROOT / "tests/targets").glob(f"test_{name}_*.py"))]
     names = [path.relative_to(ROOT).as_posix() for path in files]
     return sorted(names, key=lambda name: -len(_words(file) & _words(name)))
 

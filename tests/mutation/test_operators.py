@@ -103,6 +103,8 @@ def test_a_sample_is_the_same_whatever_changes_elsewhere():
 def test_the_tests_of_a_file_come_first():
     assert related("wavesym/exact/contacts/schedule.py")[0].startswith("tests/exact/")
     assert related("templates/c/march/march.c")[0] == "tests/targets/test_march_c.py"
+    assert related("templates/c/runtime/bound.c")[0] == "tests/targets/test_runtime_bound.py"
+    assert "tests/targets/test_stream_c.py" in related("templates/c/elimination.c")
 
 
 def test_what_is_changed_and_run_exists():
