@@ -545,6 +545,24 @@ def test_what_reading_loses_is_in_the_bound(monkeypatch: pytest.MonkeyPatch) -> 
     assert gains * found[-1] * 2.0**-53 <= error <= 2 * gains * found[-1] * 2.0**-53
 
 
+def test_what_is_wrong_all_along_adds_up_in_a_displacement(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Waves to both sides, of impedance 1, by 1 in L2 in each window of length h, and so their integrals by sqrt(h)."""
+    plan = march_plan(lower(of_one_kind("bodies", displacement=["1/4"])))
+
+    class Wrong(bounds.Losses):
+        def __init__(self, *of: Any) -> None:
+            super().__init__(*of)
+            self.initial_error = 1.0
+
+        def of_block(self, block: WindowBlock) -> tuple[float, float]:
+            return 0.0, 0.0
+
+    monkeypatch.setattr(bounds, "Losses", Wrong)
+    monkeypatch.setattr(bounds, "power_of_two", lambda _: Q(1))
+    (error,) = judge(plan, 8, DOUBLE).errors
+    assert 2 * sqrt(nearest(plan.step)) * plan.windows <= error <= 2.1 * sqrt(nearest(plan.step)) * plan.windows
+
+
 @STRETCHES
 def test_reading_a_wave_costs_no_more_than_said_and_not_much_less(start, half) -> None:
     claimed = READING * reading_weights(DEGREE, displaced=False)
