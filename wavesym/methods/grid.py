@@ -137,11 +137,12 @@ class MidpointRule:
 
     def nonlinear(self, links: Links) -> PointRule:
         """The rule from tau = 0 on, with links."""
-        u, q = np.zeros(self._problem.points), self._problem.velocity.copy()
+        u, q, prescribed = np.zeros(self._problem.points), self._problem.velocity.copy(), self._prescribed
 
         def move(step: int, came: Array) -> Array:
             nonlocal u, q
-            q[self._prescribed] = self._at_start[self._prescribed, step]  # it may jump there
+            if prescribed:
+                q[prescribed] = self._at_start[prescribed, step]  # it may jump there
             v = self._velocities @ np.concatenate([q, u, came]) + self._by_loads[step]
             v = links.settle(v, q, u, step)
             q = links.stop(2 * v - q, v)

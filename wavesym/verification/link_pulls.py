@@ -114,6 +114,8 @@ class LinkPulls:
         self._pulls = [0.0] * len(self._rows)
         self._gaps: list[float] = problem.gaps.tolist()
         self._laws = [self._link(law, inverse) for law in problem.laws]
+        # friction beside what has no mass of its own
+        self._rubbing = [link for link in self._laws if isinstance(link, _Friction) and not link.inertia]
         self._open = problem.gaps > 0
         self.changes: list[BranchChange] = []
 
@@ -145,11 +147,11 @@ class LinkPulls:
         A mass that a contact presses on a joint without mass comes to rest as friction stops that: what goes on after
         would leave it with what was lost in the step, the other way.
         """
-        problem, gone = self._problem, np.where(self._problem.mass > 0, after, v)
-        for link in self._laws if any(pull < 0 for pull in self._pulls[: len(self._gaps)]) else []:
-            if not isinstance(link, _Friction) or link.inertia:
-                continue
-            row, pressed = link.law.row, np.array(self._pulls[: len(self._gaps)]) < 0
+        problem, contacts = self._problem, len(self._gaps)
+        rubbing = [link for link in self._rubbing if min(self._pulls[:contacts], default=0.0) < 0]
+        gone = np.where(problem.mass > 0, after, v) if rubbing else after
+        for link in rubbing:
+            row, pressed = link.law.row, np.array(self._pulls[:contacts]) < 0
             stuck = link.law.limit(link.trial) == link.trial
             for joint in np.flatnonzero((row != 0) & (problem.mass == 0) & problem.is_free).tolist():
                 ratios = problem.rigid_motion(joint, parting=problem.parting[pressed])[0]

@@ -32,7 +32,8 @@ class ReturnMapping:
         self._rows = np.array([law.row for law in problem.laws])
         # what is prescribed gives no way
         self._influence = inverse @ (self._rows * problem.is_free).T
-        self._compliance = h * self._rows @ self._influence
+        # how a pull acts in one step, and in two
+        self._over = [(k * self._influence, (k * h * self._rows @ self._influence).tolist()) for k in (1, 2)]
         self._ways: list[float] = np.sign(self._rows @ problem.velocity).tolist()
         self._longer, self._pulls = [0.0] * len(self._laws), [law.preload for law in self._laws]
         # what is counted of pulls in a step, so that its mean with that of the step before is a pull
@@ -46,8 +47,8 @@ class ReturnMapping:
     def settle(self, free: Array, _: Array, u: Array, step: int) -> Array:
         """The mean velocities of points in a step, with what each link pulls when all bear what the others leave."""
         h, steps = self._h, 2 if step else 1
+        influence, coupling = self._over[steps - 1]
         free = free + self._influence @ self._counted
-        coupling: list[list[float]] = (steps * self._compliance).tolist()
         # from here on in the links' lengths, which are few: plain numbers
         longest: list[float] = (self._rows @ (u + h * free)).tolist()
         passed: list[float] = (self._rows @ self._before).tolist()
@@ -73,7 +74,7 @@ class ReturnMapping:
 
         find_pulls(coupling, longest, pulls, respond, _EXACT)
         self._counted = steps * np.array(pulls) - self._counted
-        v: Array = free - steps * self._influence @ pulls
+        v: Array = free - influence @ pulls
         lengths: list[float] = (self._rows @ (u + h * v)).tolist()
         for number, (law, length) in enumerate(zip(self._laws, lengths, strict=True)):
             if law.friction:
