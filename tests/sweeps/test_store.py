@@ -127,6 +127,16 @@ def test_damage_is_one_line_that_says_what_to_do(folder: Path, capsys: pytest.Ca
     assert not page.exists()
 
 
+def test_a_table_says_how_many_rows_have_no_results(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = folder.parent / "t.csv"
+    assert main(["sweep", str(folder), "--table", str(table)]) == 0
+    assert capsys.readouterr().err == f"{table}: rows without results: 1 (5 cases: 4 done, 1 failed, 0 left)\n"
+    for mark in (folder / "done").iterdir():
+        mark.unlink()
+    assert main(["sweep", str(folder), "--table", str(table)]) == 0
+    assert capsys.readouterr().err == f"{table}: rows without results: 5 (5 cases: 0 done, 0 failed, 5 left)\n"
+
+
 def test_the_next_start_mends_all_that_is_damaged(folder: Path, computed: list[int]) -> None:
     every = files(folder)
     marks = {json.loads(content)["batch"]: name for name, content in every.items() if name.startswith("done/")}

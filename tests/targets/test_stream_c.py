@@ -327,7 +327,8 @@ def test_a_damped_stream_is_one_of_modes_for_any_loads_at_its_step(tmp_path):
     header = files(made, "c")["gears.h"]
     assert "#define GEARS_SPACING 0.125" in header
     assert "on [0, TAU_MAX], under a rise of each load within a step." in header
-    assert files(known, "c")["gears.h"].count("under the scene's loads") == 1
+    assert "ERROR_BOUND holds under a rise of each load within a step, up to TAU_MAX; under" in header
+    assert files(known, "c")["gears.h"].count("under the scene's loads") == 2
 
 
 def selftest(folder, name, *flags):

@@ -49,8 +49,10 @@ def sweep(
         if table:
             refuse_unwritable(table)
             api.sweep_table(source, table)
+        found = api.sweep_status(source)
+        if table and found.done < found.cases:
+            click.echo(f"{table}: rows without results: {found.cases - found.done} ({found.line})", err=True)
         if tell:
-            found = api.sweep_status(source)
             put(found.json() if format == "json" else found.text())
         return 0
     if out is None:

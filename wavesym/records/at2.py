@@ -20,8 +20,9 @@ _CLOCKS = {
     **dict.fromkeys(("", "S", "SEC", "SECS", "SECOND", "SECONDS"), Fraction(1)),
     **dict.fromkeys(("MS", "MSEC", "MSECS", "MILLISECOND", "MILLISECONDS"), Fraction(1, 1000)),
 }
-_UNITS = re.compile(r"UNITS? +OF +([A-Z/^*0-9]+)", re.IGNORECASE)
-_KNOWN = {"G": "g", "CM/S": "cm/s", "CM": "cm", "CM/S/S": "cm/s^2", "CM/S2": "cm/s^2", "CM/S^2": "cm/s^2"}
+_UNITS = re.compile(r"UNITS? +OF +([A-Z/^*0-9]+)(?: *[(\[] *([A-Z/^*0-9]+) *[)\]])?", re.IGNORECASE)
+_SECONDS = re.compile(r"/(?:SEC|S)(/(?:SEC|S)|(?:\^|\*\*)?2)?")
+_KNOWN = {"G": "g", "GAL": "Gal", "GALS": "Gal", "MM": "mm", "CM": "cm", "M": "m"}
 
 
 def is_at2(lines: Sequence[str]) -> bool:
@@ -50,15 +51,33 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     if len(samples) < count:
         what = f"the file ends after {len(samples)} numbers of the {count} of NPTS on line {_HEADER}; write all of them"
         raise damage_error(file, places[-1] if places else _HEADER, what)
-    units = (
-        (_KNOWN.get(word.upper(), ""), number)
-        for number, line in enumerate(lines[: _HEADER - 1], 1)
-        for word in _UNITS.findall(line)
-    )
+    units = ((_read_unit(file, number, line), number) for number, line in enumerate(lines[: _HEADER - 1], 1))
     unit, head = next((unit_there for unit_there in units if unit_there[0]), ("", _HEADER - 1))
     return RecordFile(
         file, "AT2", tuple(samples), tuple(written), tuple(places), unit, clock="s", spacing=step, head=head
     )
+
+
+def _read_unit(file: str, number: int, line: str) -> str:
+    """The unit of samples that a line of text says; "" where it says none that is known. SceneError where two."""
+    for words in _UNITS.findall(line):
+        found = [unit for unit in map(_unit, words) if unit]
+        if len(set(found)) > 1:
+            raise damage_error(
+                file, number, f"the samples have two units, {found[0]} and {found[1]}; write one of them"
+            )
+        if found:
+            return found[0]
+    return ""
+
+
+def _unit(word: str) -> str:
+    """As scenes write it: "cm/s^2" of CM/SEC/SEC."""
+    length, per, time = word.upper().partition("/")
+    seconds = _SECONDS.fullmatch(per + time)
+    if not per or (seconds and length in ("MM", "CM", "M")):
+        return _KNOWN.get(length, "") + (f"/s{'^2' * bool(seconds[1])}" if seconds else "")
+    return ""
 
 
 def _read_counts(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:

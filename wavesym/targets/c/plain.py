@@ -22,10 +22,14 @@ def header(scene: Description, program: Program, more: str = "") -> str:
 
     A stream has no functions of tau; its bound holds `under` certain loads. What takes parameters is not `bounded`.
     """
-    under, bounded = _UNDER.get(program.step, ""), program.laws is None
+    return render("c/header.h.j2", scene=scene, more=more, under=_loads_of_bound(program), bounded=program.laws is None)
+
+
+def _loads_of_bound(program: Program) -> str:
+    """Under which loads the bound of a stream holds; "" of what is no stream."""
     if program.step == "spacing" and program.provenance.step is not None:
-        under = "under a rise of each load within a step"
-    return render("c/header.h.j2", scene=scene, more=more, under=under, bounded=bounded)
+        return "under a rise of each load within a step"
+    return _UNDER.get(program.step, "")
 
 
 def source(scene: Description, program: Program) -> str:
@@ -48,5 +52,6 @@ def streaming(scene: Description, program: Program) -> str:
         scene=scene,
         constants=c_constants(program.constants, program.real),
         sources=named_loads(program),
+        under=_loads_of_bound(program),
         state=kernel("modes/state.h", scene),
     )
