@@ -66,6 +66,14 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 #define UNROLLED
 #endif
 
+/* On aarch64 what is loaded by a number that has been given this way is loaded where it stands. Out of loops compilers would
+ * keep more vectors than there are registers, and the rest on the stack; x86-64 has such loads as operands for nothing. */
+#if VECTOR && defined(__aarch64__)
+#define LOADED_HERE(number) __asm__ volatile("" : "+r"(number))
+#else
+#define LOADED_HERE(number)
+#endif
+
 const char building_m2_output_name[BUILDING_M2_OUTPUTS][17] = {
     "strain@0.5",
     "strain@1.5",

@@ -66,10 +66,9 @@ static real step_body(const real *rows, const real *p, real initial, real *q)
     return q[0] + (last_sum - rows[LOSS] * q[0]);
 }
 
-/* A block: velocities of its points, followed by x at the end less x, from what acts on them, followed by x. */
+/* A block: to velocities of its points, followed by x at the end less x, is added what acts on them makes, followed by x. */
 static void step_block(const real *columns, const real *given, real *velocities, int width)
 {
-    clear(velocities, width);
     for (int k = 0; k < width; ++k) {
         if (!(given[k] == 0)) { /* as where loads alone act */
             add(velocities, given[k], columns + k * width, width);
@@ -110,11 +109,13 @@ static void step_joint(int joint, const joint_on_panel *on, const real *acting, 
         given[SIZE] = 0;
         *x = step_body(on->table, given, *x, velocities);
     } else if (BLOCKS > 0) {
+        const int width = points * SIZE + states;
         real *const gained = velocities + points * SIZE;
+        clear(velocities, width);
         for (int k = 0; k < states; ++k) {
             given[points * SIZE + k] = x[k];
         }
-        step_block(on->table, given, velocities, points * SIZE + states);
+        step_block(on->table, given, velocities, width);
         for (int k = 0; k < states; ++k) {
             x[k] += gained[k];
         }

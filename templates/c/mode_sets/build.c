@@ -55,7 +55,8 @@ static void step_block(const model *m, int first, int halves, motion *begin, rea
     }
     for (int half = 0; half < halves; half += TOGETHER) {
         for (int k = 0; k < TOGETHER; ++k) {
-            const int at_half = half + k;
+            int at_half = half + k;
+            LOADED_HERE(at_half);
             seen[k] = at_half % 2 ? &begin[at_half / 2 + 1] : &middle[at_half / 2];
             out[k] = values[at_half];
         }

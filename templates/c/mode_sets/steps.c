@@ -49,6 +49,7 @@ static void read_together(const model *m, const motion *const *s, real *const *o
 {
     for (int first = 0; first < FILLED; first += LANES) {
         slice sum[TOGETHER];
+        UNROLLED
         for (int k = 0; k < TOGETHER; ++k) {
             sum[k] = *(const slice *)(m->direct[0][0] + first) * s[k]->load[0];
             for (int j = 1; j < LOADS; ++j) {
@@ -73,6 +74,7 @@ static void read_together(const model *m, const motion *const *s, real *const *o
                 sum[k] += weight * s[k]->v[n];
             }
         }
+        UNROLLED
         for (int k = 0; k < TOGETHER; ++k) {
             *(slice *)(out[k] + first) = sum[k];
         }

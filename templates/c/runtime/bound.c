@@ -13,6 +13,7 @@
  * panel; the energy of errors, the norm in which masses, springs and waves are squared, never grows afterwards. */
 typedef struct {
     real energy;                       /* the norm of all errors so far */
+    slice missed;                      /* what joints add to it on a window, lane by lane */
     real instant;                      /* that of the waves on their way, at any one instant of a window */
     real wave[NAME_SLOTS];             /* the largest error of a wave, when it was sent and before */
     slice read[NAME_TRACKS];           /* what reading a wave loses, at most */
@@ -205,8 +206,8 @@ typedef struct {
 } ends_of_joint;
 
 /* What acts on the points of a joint, from a coefficient on, and what that is the sum of in absolute values. */
-WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint, int panel, int points, int ends, size_t k,
-                          slice *acting, slice *size)
+WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint, int port, int panel, int points, int ends,
+                          size_t k, slice *acting, slice *size)
 {
     const march_state *const m = b->sets;
     for (int point = 0; point < points; ++point) {
@@ -221,8 +222,8 @@ WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint,
         size[point] = MAGNITUDE(acting[point]);
     }
     for (int side = 0; side < ends; ++side) {
-        const slice pushed = b->law->push[first_port[joint] + side] * *slice_at(at->arriving[side], k);
-        const int point = points > 1 ? point_of[first_port[joint] + side] : 0;
+        const slice pushed = b->law->push[port + side] * *slice_at(at->arriving[side], k);
+        const int point = points > 1 ? point_of[port + side] : 0;
         acting[point] += pushed;
         size[point] += MAGNITUDE(pushed);
     }
@@ -243,7 +244,7 @@ static real load_error(const errors *w, const real *row, int joint, int panel)
  * of a body nothing that acts passes at once. The sums of x at the ends of a panel lose `few`: each of the lanes, at most
  * 16, adds degree/LANES numbers to its first one, and 4 sums make one of the lanes; a `unit` is one for each end. */
 WITHIN void add_residual(const progress *b, const places *now, errors *w, int joint, int panel, int n, int points,
-                         int passing, int ends, slice *energy, real *apart)
+                         int passing, int ends, real *apart)
 {
     const march_state *const m = b->sets;
     const laws *const law = b->law;
@@ -257,7 +258,10 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
     for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
         begins[i] = last[i] = sizes[i] = x_sizes[i] = x[i] = x_size[i] = nothing;
     }
+    slice *much_of = aparts, *size_of = sums, *wave_of = waves, *read_of = reads;
     ends_of_joint at = {{NULL}, {NULL}};
+    const real *rates = law->rates + at_rates[joint], *pushed = law->pushed + at_pushed[joint];
+    const real *shown = law->shown + at_shown[joint], *passed = law->passed + at_passed[joint];
     for (int side = 0; side < ends; ++side) {
         aparts[side] = sums[side] = waves[side] = reads[side] = nothing;
         at.arriving[side] = m->waves[now->arrived[arrive[ports + side]]][panel];
@@ -265,7 +269,19 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
     }
     size_t end = 0;
     for (; end <= (size_t)degree; end += LANES) {
-        acting_slices(b, &at, joint, panel, points, ends, end, s, s_size);
+        int port = ports;
+        LOADED_HERE(port);
+        LOADED_HERE(rates);
+        LOADED_HERE(pushed);
+        LOADED_HERE(shown);
+        LOADED_HERE(passed);
+        if (ends != 2) {
+            LOADED_HERE(much_of);
+            LOADED_HERE(size_of);
+            LOADED_HERE(wave_of);
+            LOADED_HERE(read_of);
+        }
+        acting_slices(b, &at, joint, port, panel, points, ends, end, s, s_size);
         for (int i = 0; i < n; ++i) {
             x[i] = *slice_at(m->path[panel][first + i], end);
             x_size[i] = MAGNITUDE(x[i]);
@@ -274,24 +290,24 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
         }
         for (int i = 0; i < n; ++i) {
             slice sum = nothing, size = nothing;
-            add_slices(law->rates + at_rates[joint] + i * n, x, x_size, n, &sum, &size);
-            add_slices(law->pushed + at_pushed[joint] + i * points, s, s_size, points, &sum, &size);
+            add_slices(rates + i * n, x, x_size, n, &sum, &size);
+            add_slices(pushed + i * points, s, s_size, points, &sum, &size);
             *(slice *)(rate_of[i] + end) = sum;
             sizes[i] += size;
             x_sizes[i] += x_size[i];
         }
         for (int side = 0; side < ends; ++side) {
-            const int row = points > 1 ? point_of[ports + side] : 0;
+            const int row = points > 1 ? point_of[port + side] : 0;
             const slice out = *slice_at(at.sent[side], end), a = *slice_at(at.arriving[side], end);
             const slice out_size = MAGNITUDE(out);
             slice sum = nothing, size = nothing;
-            add_slices(law->shown + at_shown[joint] + row * n, x, x_size, n, &sum, &size);
-            add_slices(law->passed + at_passed[joint] + row * points, s, s_size, passing, &sum, &size);
-            const slice much = (out + a) - ratio[ports + side] * sum;
-            aparts[side] += MAGNITUDE(much);
-            sums[side] += size;
-            waves[side] += out_size + MAGNITUDE(a);
-            reads[side] += *slice_at(w->reading, end) * out_size;
+            add_slices(shown + row * n, x, x_size, n, &sum, &size);
+            add_slices(passed + row * points, s, s_size, passing, &sum, &size);
+            const slice much = (out + a) - ratio[port + side] * sum;
+            much_of[side] += MAGNITUDE(much);
+            size_of[side] += size;
+            wave_of[side] += out_size + MAGNITUDE(a);
+            read_of[side] += *slice_at(w->reading, end) * out_size;
         }
     }
     for (int i = 0; i < n; ++i) {
@@ -307,7 +323,7 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
             rest += MAGNITUDE(missed) + 4 * unit * MAGNITUDE(bent);
         }
         rest = w->bent[panel][joint] * rest + (2 * half * exact * sizes[i] + few * x_sizes[i]);
-        *energy += w->weight[first + i] * rest;
+        w->missed += w->weight[first + i] * rest;
         w->energy += w->weight[first + i] *
                      (magnitude(total_of(&begins[i]) - w->end[first + i]) +
                       2 * half * load_error(w, law->pushed + at_pushed[joint] + i * points, joint, panel));
@@ -331,10 +347,10 @@ static void add_window(const progress *b, errors *w)
     const laws *const law = b->law;
     const int window = b->window;
     const real spare = (real)(256 * (b->degree + 4)) * least_number;
-    slice energy = nothing;
     places now;
     real apart[NAME_PORTS];
     locate(window, &now);
+    w->missed = nothing;
     for (int port = 0; port < NAME_PORTS; ++port) {
         apart[port] = 0;
     }
@@ -342,19 +358,19 @@ static void add_window(const progress *b, errors *w)
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             const int n = states_of(joint), points = points_of(joint), ends = first_port[joint + 1] - first_port[joint];
             if (is_body[joint] && ends == 2) { /* as compilers know then */
-                add_residual(b, &now, w, joint, panel, 1, 1, 0, 2, &energy, apart);
+                add_residual(b, &now, w, joint, panel, 1, 1, 0, 2, apart);
             } else if (is_body[joint]) {
-                add_residual(b, &now, w, joint, panel, 1, 1, 0, ends, &energy, apart);
+                add_residual(b, &now, w, joint, panel, 1, 1, 0, ends, apart);
             } else if (points == 1 && n == 0 && ends == 2) {
-                add_residual(b, &now, w, joint, panel, 0, 1, 1, 2, &energy, apart);
+                add_residual(b, &now, w, joint, panel, 0, 1, 1, 2, apart);
             } else if (points == 1 && n == 0) {
-                add_residual(b, &now, w, joint, panel, 0, 1, 1, ends, &energy, apart);
+                add_residual(b, &now, w, joint, panel, 0, 1, 1, ends, apart);
             } else {
-                add_residual(b, &now, w, joint, panel, n, points, points, ends, &energy, apart);
+                add_residual(b, &now, w, joint, panel, n, points, points, ends, apart);
             }
         }
     }
-    w->energy += total_of(&energy) + spare * w->all;
+    w->energy += total_of(&w->missed) + spare * w->all;
     w->instant += w->steady * w->energy;
     for (int port = 0; port < NAME_PORTS; ++port) {
         apart[port] += spare * w->beyond[port];

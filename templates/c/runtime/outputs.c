@@ -56,7 +56,7 @@ static void OF(accumulate_term)(OF(march_state) *all, const real *inverse, const
 
 /* The same of both waves of a strand at once, which are all of it, and are not integrated; `sum` grows by magnitudes. What
  * lies behind a series is written, too. */
-static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c,
+WITHIN void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c,
                                OF(pack) *sum)
 {
     const num *w[OF(parts)], *v[OF(parts)];
@@ -87,33 +87,40 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
 static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int window, int degree, int more,
                            num *c, num *weight)
 {
+    const int size = (degree + 2) * OF(parts);
+    int others[NAME_STRANDS + 1], count = 0;
     OF(pack) sum[OF(parts)];
-    num rest[OF(parts)];
     for (int side = 0; side < OF(parts); ++side) {
         sum[side] = NOTHING;
-        rest[side] = ZERO;
     }
-    for (int s = 0; s < NAME_STRANDS; ++s) {
-        const int t = first_term[s], last = first_term[s + 1];
-        if (!more && last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
-            OF(accumulate_two)(all, law, t, window, degree, c, sum);
+    for (int s = 0; s < NAME_STRANDS; ++s) { /* these first: no sum waits while other strands are computed */
+        if (!more && has_two(s)) {
+            OF(accumulate_two)(all, law, first_term[s], window, degree, c + s * size, sum);
         } else {
-            for (int k = 0; k < (degree + 2) * OF(parts) && !more; ++k) {
-                c[k] = ZERO;
-            }
-            for (int k = t; k < last; ++k) {
-                OF(accumulate_term)(all, inverse, law, k, window, degree, c);
-            }
-            for (int k = 0; k <= degree + 1; ++k) {
-                for (int side = 0; side < OF(parts); ++side) {
-                    rest[side] += SIZE_OF(c[k * OF(parts) + side]);
-                }
-            }
+            others[count++] = s;
         }
-        c += (degree + 2) * OF(parts);
     }
     for (int side = 0; side < OF(parts); ++side) {
-        weight[side] += (real)(4 * (degree + 2)) * (rest[side] + TOTAL_OF(sum[side]));
+        weight[side] += (real)(4 * (degree + 2)) * TOTAL_OF(sum[side]);
+    }
+    for (int k = 0; k < count; ++k) {
+        const int s = others[k];
+        num *const here = c + s * size;
+        int terms = 4 * (degree + 2);
+        LOADED_HERE(terms);
+        for (int i = 0; i < size && !more; ++i) {
+            here[i] = ZERO;
+        }
+        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
+            OF(accumulate_term)(all, inverse, law, t, window, degree, here);
+        }
+        for (int side = 0; side < OF(parts); ++side) {
+            num rest = ZERO;
+            for (int i = 0; i <= degree + 1; ++i) {
+                rest += SIZE_OF(here[i * OF(parts) + side]);
+            }
+            weight[side] += (real)terms * rest;
+        }
     }
 }
 

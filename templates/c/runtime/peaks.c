@@ -130,6 +130,7 @@ static int beyond(const name_model *m, int window, int at, const summit *least, 
         int n = 1;
         middle += c[0];
         for (; n + SUMS <= degree + 2; n += SUMS) {
+            UNROLLED
             for (int j = 0; j < SUMS; ++j) {
                 sums[j] += magnitude(c[n + j]);
             }

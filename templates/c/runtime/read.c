@@ -109,10 +109,13 @@ typedef struct {
  * as it is. */
 WITHIN void read_vectors(int count, int width, const strands_read *r, const samples *s, size_t k)
 {
-    const size_t size = (size_t)r->m->degree[r->window] + 2;
-    const int now = r->window % CYCLE * NAME_STRANDS + r->strand;
-    const real begin = cycle_begin(r->window), start = strand_start[now], excess = strand_excess[now];
-    const real scale = strand_scale[r->strand], first = (real)k;
+    int window = r->window, strand = r->strand;
+    LOADED_HERE(window);
+    LOADED_HERE(strand);
+    const size_t size = (size_t)r->m->degree[window] + 2;
+    const int now = window % CYCLE * NAME_STRANDS + strand;
+    const real begin = cycle_begin(window), start = strand_start[now], excess = strand_excess[now];
+    const real scale = strand_scale[strand], first = (real)k;
     slice u[ABREAST], sum[TOGETHER * ABREAST];
     UNROLLED
     for (int j = 0; j < width; ++j) {

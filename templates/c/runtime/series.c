@@ -85,6 +85,13 @@ static int slot(int track, int window, int ago)
     return turn == 2 ? ring[track] + ((window + ago) & 1) : ring[track] + (window + turn - ago) % turn;
 }
 
+/* Whether a strand is the sum of two waves, not of integrals. */
+static int has_two(int strand)
+{
+    const int first = first_term[strand];
+    return first_term[strand + 1] - first == 2 && !term_summed[first] && !term_summed[first + 1];
+}
+
 static int states_of(int joint)
 {
     return first_state[joint + 1] - first_state[joint];

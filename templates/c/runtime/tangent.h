@@ -14,6 +14,7 @@ struct name_tangent {
     /* for `build_tangent` alone: what acts on a derivative as laws change, on points, on states, and on velocities */
     name_work work;
     name_march_state lane[NAME_LANES];
+    name_real total[NAME_GAINS + 1]; /* integrals of values, while what is read of derivatives goes on from them */
     name_real acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
     name_real moving[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
     name_real shifted[NAME_PANELS][NAME_POINTS][NAME_ROW];

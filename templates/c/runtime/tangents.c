@@ -174,13 +174,12 @@ static void keep_lane(name_tangent *tangent, progress *b, int lane)
     slopes_of(&tangent->parameters, lane, &slope);
     accumulate(m, b->inverse, b->law, b->window, b->degree, 0, all, b->weight);
     if (differs(slope.gain, NAME_GAINS)) { /* and the waves themselves, whose integrals have not gone on yet */
-        real total[NAME_GAINS + 1];
         for (int k = 0; k < NAME_GAINS; ++k) {
-            total[k] = b->sets->total[k];
+            tangent->total[k] = b->sets->total[k];
         }
         accumulate(b->sets, b->inverse, &slope, b->window, b->degree, 1, all, b->weight);
         for (int k = 0; k < NAME_GAINS; ++k) {
-            b->sets->total[k] = total[k];
+            b->sets->total[k] = tangent->total[k];
         }
     }
     for (int k = 0; k < NAME_STATES; ++k) {
