@@ -114,12 +114,17 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
         for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
             OF(accumulate_term)(all, inverse, law, t, window, degree, here);
         }
+        num rest[OF(parts)];
         for (int side = 0; side < OF(parts); ++side) {
-            num rest = ZERO;
-            for (int i = 0; i <= degree + 1; ++i) {
-                rest += SIZE_OF(here[i * OF(parts) + side]);
+            rest[side] = ZERO;
+        }
+        for (int i = 0; i <= degree + 1; ++i) {
+            for (int side = 0; side < OF(parts); ++side) {
+                rest[side] += SIZE_OF(here[i * OF(parts) + side]);
             }
-            weight[side] += (real)terms * rest;
+        }
+        for (int side = 0; side < OF(parts); ++side) {
+            weight[side] += (real)terms * rest[side];
         }
     }
 }
