@@ -29,14 +29,16 @@ static fmi2Status none(instance *it, const char *what)
     return answer(it, lack(&it->run, what));
 }
 
-/* Functions and values that this model has none of. */
+/* Functions and values that this model has none of, though simulators look for their names; declared here alone. */
 #define VARIABLES fmi2Component c, const fmi2ValueReference reference[], size_t count
 #define NONE(function, what, arguments) \
+    FMI2_EXPORT fmi2Status FMI2(function) arguments; \
     fmi2Status FMI2(function) arguments \
     { \
         return none((instance *)c, what); \
     }
 #define NO_VALUE(function, what, arguments) \
+    FMI2_EXPORT fmi2Status FMI2(function) arguments; \
     fmi2Status FMI2(function) arguments \
     { \
         return count ? none((instance *)c, what) : fmi2OK; \

@@ -4,12 +4,17 @@
 
 #include <stddef.h>
 
-#if defined(_WIN32)
-#define FMI2_EXPORT __declspec(dllexport)
-#elif defined(__GNUC__)
-#define FMI2_EXPORT __attribute__((visibility("default")))
+#ifdef __cplusplus
+#define FMI2_LINKAGE extern "C"
 #else
-#define FMI2_EXPORT
+#define FMI2_LINKAGE
+#endif
+#if defined(_WIN32)
+#define FMI2_EXPORT FMI2_LINKAGE __declspec(dllexport)
+#elif defined(__GNUC__)
+#define FMI2_EXPORT FMI2_LINKAGE __attribute__((visibility("default")))
+#else
+#define FMI2_EXPORT FMI2_LINKAGE
 #endif
 
 /* Names begin with FMI2_FUNCTION_PREFIX where several models are linked into one program. */
@@ -44,10 +49,6 @@ typedef struct {
     fmi2ComponentEnvironment componentEnvironment;
 } fmi2CallbackFunctions;
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 FMI2_EXPORT const char *FMI2(fmi2GetTypesPlatform)(void);
 FMI2_EXPORT const char *FMI2(fmi2GetVersion)(void);
 FMI2_EXPORT fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component, fmi2Boolean, size_t, const fmi2String[]);
@@ -62,13 +63,9 @@ FMI2_EXPORT fmi2Status FMI2(fmi2Terminate)(fmi2Component);
 FMI2_EXPORT fmi2Status FMI2(fmi2Reset)(fmi2Component);
 
 FMI2_EXPORT fmi2Status FMI2(fmi2GetReal)(fmi2Component, const fmi2ValueReference[], size_t, fmi2Real[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetInteger)(fmi2Component, const fmi2ValueReference[], size_t, fmi2Integer[]);
 FMI2_EXPORT fmi2Status FMI2(fmi2GetBoolean)(fmi2Component, const fmi2ValueReference[], size_t, fmi2Boolean[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetString)(fmi2Component, const fmi2ValueReference[], size_t, fmi2String[]);
 FMI2_EXPORT fmi2Status FMI2(fmi2SetReal)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Real[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetInteger)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Integer[]);
 FMI2_EXPORT fmi2Status FMI2(fmi2SetBoolean)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Boolean[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetString)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2String[]);
 
 FMI2_EXPORT fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component, fmi2FMUstate *);
 FMI2_EXPORT fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component, fmi2FMUstate);
@@ -76,24 +73,9 @@ FMI2_EXPORT fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component, fmi2FMUstate *);
 FMI2_EXPORT fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component, fmi2FMUstate, size_t *);
 FMI2_EXPORT fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component, fmi2FMUstate, fmi2Byte[], size_t);
 FMI2_EXPORT fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component, const fmi2Byte[], size_t, fmi2FMUstate *);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetDirectionalDerivative)(fmi2Component, const fmi2ValueReference[], size_t,
-                                                          const fmi2ValueReference[], size_t, const fmi2Real[],
-                                                          fmi2Real[]);
 
-FMI2_EXPORT fmi2Status FMI2(fmi2SetRealInputDerivatives)(fmi2Component, const fmi2ValueReference[], size_t,
-                                                         const fmi2Integer[], const fmi2Real[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetRealOutputDerivatives)(fmi2Component, const fmi2ValueReference[], size_t,
-                                                          const fmi2Integer[], fmi2Real[]);
 FMI2_EXPORT fmi2Status FMI2(fmi2DoStep)(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean);
-FMI2_EXPORT fmi2Status FMI2(fmi2CancelStep)(fmi2Component);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetStatus)(fmi2Component, const fmi2StatusKind, fmi2Status *);
 FMI2_EXPORT fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component, const fmi2StatusKind, fmi2Real *);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetIntegerStatus)(fmi2Component, const fmi2StatusKind, fmi2Integer *);
 FMI2_EXPORT fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component, const fmi2StatusKind, fmi2Boolean *);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetStringStatus)(fmi2Component, const fmi2StatusKind, fmi2String *);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

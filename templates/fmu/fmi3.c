@@ -29,14 +29,16 @@ static fmi3Status none(fmi3Instance of, const char *what)
     return answer(it, lack(&it->run, what));
 }
 
-/* Functions and values that this model has none of. */
+/* Functions and values that this model has none of, though simulators look for their names; declared here alone. */
 #define VARIABLES fmi3Instance it, const fmi3ValueReference reference[], size_t references
 #define NONE(function, what, arguments) \
+    FMI3_EXPORT fmi3Status FMI3(function) arguments; \
     fmi3Status FMI3(function) arguments \
     { \
         return none(it, what); \
     }
 #define NO_VALUE(function, what, arguments) \
+    FMI3_EXPORT fmi3Status FMI3(function) arguments; \
     fmi3Status FMI3(function) arguments \
     { \
         return references ? none(it, what) : fmi3OK; \
@@ -171,6 +173,8 @@ FMI3_SET(Boolean)
 
 /* There are no values of other types. */
 #define NO_TYPE(type) \
+    FMI3_GET(type); \
+    FMI3_SET(type); \
     FMI3_GET(type) \
     { \
         return references ? none(it, "a variable of type " #type) : fmi3OK; \

@@ -6,12 +6,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define FMI3_EXPORT __declspec(dllexport)
-#elif defined(__GNUC__)
-#define FMI3_EXPORT __attribute__((visibility("default")))
+#ifdef __cplusplus
+#define FMI3_LINKAGE extern "C"
 #else
-#define FMI3_EXPORT
+#define FMI3_LINKAGE
+#endif
+#if defined(_WIN32)
+#define FMI3_EXPORT FMI3_LINKAGE __declspec(dllexport)
+#elif defined(__GNUC__)
+#define FMI3_EXPORT FMI3_LINKAGE __attribute__((visibility("default")))
+#else
+#define FMI3_EXPORT FMI3_LINKAGE
 #endif
 
 /* Names begin with FMI3_FUNCTION_PREFIX where several models are linked into one program. */
@@ -70,10 +75,6 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
     FMI3_EXPORT fmi3Status FMI3(fmi3Set##type)(fmi3Instance it, const fmi3ValueReference reference[], \
                                                size_t references, const fmi3##type value[], size_t count)
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 FMI3_EXPORT const char *FMI3(fmi3GetVersion)(void);
 FMI3_EXPORT fmi3Status FMI3(fmi3SetDebugLogging)(fmi3Instance, fmi3Boolean, size_t, const fmi3String[]);
 
@@ -93,97 +94,22 @@ FMI3_EXPORT void FMI3(fmi3FreeInstance)(fmi3Instance);
 FMI3_EXPORT fmi3Status FMI3(fmi3EnterInitializationMode)(fmi3Instance, fmi3Boolean, fmi3Float64, fmi3Float64,
                                                          fmi3Boolean, fmi3Float64);
 FMI3_EXPORT fmi3Status FMI3(fmi3ExitInitializationMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3EnterEventMode)(fmi3Instance);
 FMI3_EXPORT fmi3Status FMI3(fmi3Terminate)(fmi3Instance);
 FMI3_EXPORT fmi3Status FMI3(fmi3Reset)(fmi3Instance);
 
-FMI3_GET(Float32);
 FMI3_GET(Float64);
-FMI3_GET(Int8);
-FMI3_GET(UInt8);
-FMI3_GET(Int16);
-FMI3_GET(UInt16);
-FMI3_GET(Int32);
-FMI3_GET(UInt32);
-FMI3_GET(Int64);
-FMI3_GET(UInt64);
 FMI3_GET(Boolean);
-FMI3_GET(String);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetBinary)(fmi3Instance, const fmi3ValueReference[], size_t, size_t[], fmi3Binary[],
-                                           size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetClock)(fmi3Instance, const fmi3ValueReference[], size_t, fmi3Clock[]);
-FMI3_SET(Float32);
 FMI3_SET(Float64);
-FMI3_SET(Int8);
-FMI3_SET(UInt8);
-FMI3_SET(Int16);
-FMI3_SET(UInt16);
-FMI3_SET(Int32);
-FMI3_SET(UInt32);
-FMI3_SET(Int64);
-FMI3_SET(UInt64);
 FMI3_SET(Boolean);
-FMI3_SET(String);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetBinary)(fmi3Instance, const fmi3ValueReference[], size_t, const size_t[],
-                                           const fmi3Binary[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetClock)(fmi3Instance, const fmi3ValueReference[], size_t, const fmi3Clock[]);
 
-FMI3_EXPORT fmi3Status FMI3(fmi3GetNumberOfVariableDependencies)(fmi3Instance, fmi3ValueReference, size_t *);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetVariableDependencies)(fmi3Instance, fmi3ValueReference, size_t[],
-                                                         fmi3ValueReference[], size_t[], fmi3DependencyKind[], size_t);
 FMI3_EXPORT fmi3Status FMI3(fmi3GetFMUState)(fmi3Instance, fmi3FMUState *);
 FMI3_EXPORT fmi3Status FMI3(fmi3SetFMUState)(fmi3Instance, fmi3FMUState);
 FMI3_EXPORT fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance, fmi3FMUState *);
 FMI3_EXPORT fmi3Status FMI3(fmi3SerializedFMUStateSize)(fmi3Instance, fmi3FMUState, size_t *);
 FMI3_EXPORT fmi3Status FMI3(fmi3SerializeFMUState)(fmi3Instance, fmi3FMUState, fmi3Byte[], size_t);
 FMI3_EXPORT fmi3Status FMI3(fmi3DeserializeFMUState)(fmi3Instance, const fmi3Byte[], size_t, fmi3FMUState *);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetDirectionalDerivative)(fmi3Instance, const fmi3ValueReference[], size_t,
-                                                          const fmi3ValueReference[], size_t, const fmi3Float64[],
-                                                          size_t, fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetAdjointDerivative)(fmi3Instance, const fmi3ValueReference[], size_t,
-                                                      const fmi3ValueReference[], size_t, const fmi3Float64[], size_t,
-                                                      fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3EnterConfigurationMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3ExitConfigurationMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetIntervalDecimal)(fmi3Instance, const fmi3ValueReference[], size_t, fmi3Float64[],
-                                                    fmi3IntervalQualifier[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetIntervalFraction)(fmi3Instance, const fmi3ValueReference[], size_t, fmi3UInt64[],
-                                                     fmi3UInt64[], fmi3IntervalQualifier[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetShiftDecimal)(fmi3Instance, const fmi3ValueReference[], size_t, fmi3Float64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetShiftFraction)(fmi3Instance, const fmi3ValueReference[], size_t, fmi3UInt64[],
-                                                  fmi3UInt64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetIntervalDecimal)(fmi3Instance, const fmi3ValueReference[], size_t,
-                                                    const fmi3Float64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetIntervalFraction)(fmi3Instance, const fmi3ValueReference[], size_t,
-                                                     const fmi3UInt64[], const fmi3UInt64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetShiftDecimal)(fmi3Instance, const fmi3ValueReference[], size_t, const fmi3Float64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetShiftFraction)(fmi3Instance, const fmi3ValueReference[], size_t, const fmi3UInt64[],
-                                                  const fmi3UInt64[]);
-FMI3_EXPORT fmi3Status FMI3(fmi3EvaluateDiscreteStates)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3UpdateDiscreteStates)(fmi3Instance, fmi3Boolean *, fmi3Boolean *, fmi3Boolean *,
-                                                      fmi3Boolean *, fmi3Boolean *, fmi3Float64 *);
 
-FMI3_EXPORT fmi3Status FMI3(fmi3EnterStepMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetOutputDerivatives)(fmi3Instance, const fmi3ValueReference[], size_t,
-                                                      const fmi3Int32[], fmi3Float64[], size_t);
 FMI3_EXPORT fmi3Status FMI3(fmi3DoStep)(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean *,
                                         fmi3Boolean *, fmi3Boolean *, fmi3Float64 *);
-
-/* Of model exchange and scheduled execution, which this is not for: simulators look for the names of all functions. */
-FMI3_EXPORT fmi3Status FMI3(fmi3EnterContinuousTimeMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3CompletedIntegratorStep)(fmi3Instance, fmi3Boolean, fmi3Boolean *, fmi3Boolean *);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetTime)(fmi3Instance, fmi3Float64);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetContinuousStates)(fmi3Instance, const fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetContinuousStateDerivatives)(fmi3Instance, fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetEventIndicators)(fmi3Instance, fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetContinuousStates)(fmi3Instance, fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetNominalsOfContinuousStates)(fmi3Instance, fmi3Float64[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetNumberOfEventIndicators)(fmi3Instance, size_t *);
-FMI3_EXPORT fmi3Status FMI3(fmi3GetNumberOfContinuousStates)(fmi3Instance, size_t *);
-FMI3_EXPORT fmi3Status FMI3(fmi3ActivateModelPartition)(fmi3Instance, fmi3ValueReference, fmi3Float64);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
