@@ -16,7 +16,7 @@ from hypothesis import Phase, is_hypothesis_test, settings
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from tests.support.kept_builds import KeptBuilds
-from wavesym.running import mode_sets, native, sets, stream
+from wavesym.running import mode_sets, native, sets
 from wavesym.running.toolchain import Compiler, CompilerError, compiler
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
@@ -92,7 +92,7 @@ def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--run-slow"):
             patch.setattr(Compiler, "run", quick)
-            for module in (mode_sets, sets, stream):
+            for module in (mode_sets, sets):
                 patch.setattr(module, "FAST", ("-O0", *native.FAST[1:]))
         yield
 

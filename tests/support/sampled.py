@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 import wavesym
 from tests.support.laplace import Laplace
+from tests.support.streamed import Stream
 from tests.support.truth import Truth
-from wavesym.running.stream import Stream
 
 Response = Callable[[int, Fraction], arb]
 """An output, by number, at a time since its load began."""

@@ -8,13 +8,55 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import wavesym
 from wavesym import api
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.programs.program import Program
 from wavesym.programs.request import Request
-from wavesym.running.stream import StreamModel
+from wavesym.running.compilation import CompiledStream, compile_files
+from wavesym.targets.files import sources
+
+
+class StreamModel:
+    """The compiled stream of a program; `start` gives as many of it as are wanted."""
+
+    def __init__(self, program: Program, flags: Sequence[str] = ("-O1",)) -> None:
+        real = np.float64 if program.real.bytes == 8 else np.float32
+        with compile_files(sources(program, "c"), len(program.outputs), real, ("-std=c99", *flags)) as built:
+            self.built = built  # once loaded it stays, though the files go
+        self.outputs = tuple(output.name for output in program.outputs)
+        self.loads = program.sources
+        self.fields = program.laws.fields if program.laws else ()
+        self.panel = program.constants["panel"]
+
+    def start(self, **given: ArrayLike) -> Stream:
+        """A stream at tau = 0, its loads 0, with the parameters `given` by field and those of the scene for others."""
+        rows = [np.ravel(given.get(field.name, [*map(nearest, field.values)])) for field in self.fields]
+        return Stream(self.built.stream(np.concatenate(rows) if rows else None))
+
+
+class Stream:
+    """A stream: the status of each step, beside its outputs."""
+
+    def __init__(self, compiled: CompiledStream) -> None:
+        self.compiled, self.state, self.refused = compiled, compiled.state, compiled.refused
+
+    def step(self, dtau: float, loads: ArrayLike) -> tuple[int, NDArray[np.float64]]:
+        """The status, and all outputs, after dtau."""
+        self.compiled.status = 0
+        out = self.compiled.step(dtau, loads)
+        return self.compiled.status, out
+
+    @property
+    def lost(self) -> float:
+        """What it says that polynomials have lost."""
+        return self.compiled.lost
+
+    def copy(self) -> Stream:
+        """Another one that goes on from here."""
+        return Stream(CompiledStream(self.compiled.program, self.state.copy()))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import wavesym
 from tests.running.test_model_units import CASES as WITH_UNITS
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.drives import EVERY, small
-from tests.support.streamed import built, missed, run
+from tests.support.streamed import StreamModel, built, missed, run
 from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded, selftest
 from wavesym import api
 from wavesym.errors import WavesymError
@@ -24,8 +24,6 @@ from wavesym.programs.runtime.network import NAMES as FIELDS
 from wavesym.programs.stream.parameters import QUICKER
 from wavesym.programs.stream.plan import inputs_of, stream_plan
 from wavesym.programs.stream.tables import StreamTables
-from wavesym.running.native import address
-from wavesym.running.stream import StreamModel
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import lower
 from wavesym.scene.lowering import sources as load_sources
@@ -50,7 +48,7 @@ def program():
 
 @pytest.fixture(scope="module")
 def gears(program):
-    return StreamModel(program, ("-O1",))
+    return StreamModel(program)
 
 
 @pytest.mark.quick(1)
@@ -58,13 +56,13 @@ def gears(program):
 def test_a_stream_is_the_same_in_whatever_memory_it_is_built(scene):
     model = lower(wavesym.Scene.from_toml(scene))
     names = ("kappa",) if scene == "building_m2" else ("mass", "impedance")
-    one = StreamModel(api.program(wavesym.Scene.from_toml(scene), Request(stream=True, runtime=names)), ("-O1",))
+    one = StreamModel(api.program(wavesym.Scene.from_toml(scene), Request(stream=True, runtime=names)))
     found = []
     for byte in (0, 255):
         stream = one.start()
         stream.state[:] = byte
         numbers = np.array([nearest(value) for field in one.fields for value in field.values])
-        assert one._begin(address(stream.state), address(numbers)) == 0
+        assert one.built.call("build", stream.state, numbers) == 0
         loads = [1.0] * len(one.loads)
         found.append([stream.step(model.horizon() / 40, loads)[1].tolist() for _ in range(20)] + [stream.lost])
     assert found[0] == found[1]
@@ -88,13 +86,6 @@ def test_each_set_is_the_scene_that_has_it(gears):
             assert code == 2
             assert np.all(np.isnan(out))
     assert gears.start(kappa=[1e-300, 1]).refused == 0  # so heavy that nothing moves
-
-
-def test_parameters_are_named_and_counted(gears):
-    with pytest.raises(WavesymError, match="kappa: 3 values; write 2"):
-        gears.start(kappa=[1, 2, 3])
-    with pytest.raises(WavesymError, match="load: not a parameter of this stream; write kappa, inertia"):
-        gears.start(load=[1])
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.support.characteristics import Shafts
+from tests.support.streamed import StreamModel
 from wavesym import Scene, api
 from wavesym.cli import main
 from wavesym.mechanics.model import Model
@@ -25,7 +26,6 @@ from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.request import Request
 from wavesym.programs.stream.adjustment import fit_speeds
 from wavesym.running.native import address, library
-from wavesym.running.stream import StreamModel
 from wavesym.scene import lower
 from wavesym.targets.files import sources
 
@@ -194,7 +194,7 @@ def test_parameters_at_run_time_have_the_adjusted_speeds() -> None:
     """With the scene's own numbers a stream that is built when it starts is the one that was built before."""
     scene = drive("2 m", "2 m")
     both = [
-        StreamModel(api.program(scene, Request(stream=True, step=in_tau(scene), runtime=names)), ("-O1",)).start()
+        StreamModel(api.program(scene, Request(stream=True, step=in_tau(scene), runtime=names))).start()
         for names in ((), ("kappa", "inertia"))
     ]
     for moment in MOMENTS[:50]:

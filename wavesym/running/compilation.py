@@ -17,13 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wavesym.running.native import struct_size, struct_sizes
+from wavesym.running.native import call, room, struct_sizes
 from wavesym.running.toolchain import compiler
 
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
 FLAGS = ("-std=c99", "-O2", *_WARNINGS)
-_WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
-_ALIGNED = 64  # bytes, of vectors
 _WIDEST_BATCH = 64  # sets
 
 
@@ -49,26 +47,22 @@ class CompiledLibrary:
 
     def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
         """All outputs at taus by NAME_eval: shape (outputs, len(taus)), NaN out of range."""
-        return self.values(self.function("eval", [self.number, _WHERE]), taus)
+        return self.values(partial(self.call, "eval"), taus)
 
     def sample(self, tau0: float, dtau: float, count: int) -> tuple[int, NDArray[np.float64]]:
         """What NAME_sample returns, and all outputs at tau0 + k dtau: shape (outputs, count), NaN out of range."""
-        out = np.empty((self.outputs, count), self.real)
-        sample = self.function("sample", [self.number, self.number, _MANY, _WHERE])
-        return int(sample(tau0, dtau, count, out.ctypes.data)), out.astype(np.float64)
+        return self.samples("sample", tau0, dtau, count, (self.outputs, count))
 
     def model(self, parameters: ArrayLike) -> CompiledModel:
         """What NAME_build makes of parameters, in the order of the struct."""
-        given, model = np.array(parameters, self.real), self._memory("model")
-        status = self.function("build", [_WHERE, _WHERE])(model.ctypes.data, given.ctypes.data)
-        return CompiledModel(self, model, int(status))
+        model = self._memory("model")
+        return CompiledModel(self, model, self.call("build", model, np.array(parameters, self.real)))
 
     def bounded_model(self, parameters: ArrayLike) -> tuple[CompiledModel, NDArray[np.float64]]:
         """What NAME_error_bound makes of parameters, and the proved bound of each output."""
-        given, model, bound = np.array(parameters, self.real), self._memory("model"), np.empty(self.outputs, self.real)
-        build = self.function("error_bound", [_WHERE, _WHERE, _WHERE])
-        status = build(model.ctypes.data, given.ctypes.data, bound.ctypes.data)
-        return CompiledModel(self, model, int(status)), bound.astype(np.float64)
+        model, bound = self._memory("model"), np.empty(self.outputs, self.real)
+        status = self.call("error_bound", model, np.array(parameters, self.real), bound)
+        return CompiledModel(self, model, status), bound.astype(np.float64)
 
     def batch(
         self, sets: ArrayLike, taus: ArrayLike, data: ArrayLike
@@ -79,62 +73,60 @@ class CompiledLibrary:
         """
         given, instants, values = (np.ascontiguousarray(each, self.real) for each in (sets, taus, data))
         batch, kept = self._memory("batch"), self._memory("data")
-        at, count = (batch.ctypes.data, len(instants))
-        self.function("build_batch", [_WHERE, _WHERE, _MANY])(at, given.ctypes.data, len(given))
+        self.call("build_batch", batch, given, len(given))
         models = []
         for k in range(len(given)):
             model = self._memory("model")
-            status = self.function("batch_model", [_WHERE, ctypes.c_int, _WHERE])(at, k, model.ctypes.data)
-            models.append(CompiledModel(self, model, int(status)))
-        size = self.function("data_size", [_WHERE, _MANY], _MANY)(instants.ctypes.data, count)
-        numbers = np.empty(size, self.real)
-        init = self.function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY])
-        init(kept.ctypes.data, numbers.ctypes.data, instants.ctypes.data, values.ctypes.data, count)
+            models.append(CompiledModel(self, model, self.call("batch_model", batch, ctypes.c_int(k), model)))
+        count = len(instants)
+        numbers = np.empty(self.call("data_size", instants, count, result=ctypes.c_size_t), self.real)
+        self.call("data_init", kept, numbers, instants, values, count)
         misfits = np.empty(_WIDEST_BATCH, self.real)
-        self.function("batch_misfit", [_WHERE, _WHERE, _WHERE], None)(at, kept.ctypes.data, misfits.ctypes.data)
+        self.call("batch_misfit", batch, kept, misfits, result=None)
         return models, misfits[: len(given)].astype(np.float64)
 
     def tangent(self, parameters: ArrayLike, tau0: float, dtau: float, count: int) -> NDArray[np.float64]:
         """Values at tau0 + k dtau, and their derivatives by each parameter: (1 + parameters, outputs, count)."""
         given, tangent = np.array(parameters, self.real), self._memory("tangent")
-        self.function("build_tangent", [_WHERE, _WHERE])(tangent.ctypes.data, given.ctypes.data)
-        out = np.empty((1 + given.size, self.outputs, count), self.real)
-        sample = self.function("tangent_sample", [_WHERE, self.number, self.number, _MANY, _WHERE])
-        sample(tangent.ctypes.data, tau0, dtau, count, out.ctypes.data)
-        return out.astype(np.float64)
+        self.call("build_tangent", tangent, given)
+        shape = (1 + given.size, self.outputs, count)
+        return self.samples("tangent_sample", tau0, dtau, count, shape, tangent)[1]
 
     def stream(self, parameters: ArrayLike | None = None) -> CompiledStream:
         """A state at tau = 0, built of parameters, in the order of the struct, where there are some."""
         state = self._memory("state")
         if parameters is None:
-            self.function("init", [_WHERE])(state.ctypes.data)
-        else:
-            given = np.array(parameters, self.real)
-            self.function("build", [_WHERE, _WHERE])(state.ctypes.data, given.ctypes.data)
-        return CompiledStream(self, state)
+            self.call("init", state, result=None)
+            return CompiledStream(self, state)
+        return CompiledStream(self, state, self.call("build", state, np.array(parameters, self.real)))
 
     def selftest(self) -> int:
         """The exit status of the self-test: 0 where the program on this machine gives the values it should."""
         return subprocess.run([self._selftest], capture_output=True, check=False).returncode
 
-    def function(self, name: str, arguments: Sequence[Any], result: Any = ctypes.c_int) -> ctypes._NamedFuncPointer:
-        """A function NAME_`name` of the library."""
-        found: ctypes._NamedFuncPointer = getattr(self._loaded, f"{self._name}_{name}")
-        found.argtypes, found.restype = list(arguments), result
-        return found
+    def call(self, name: str, *given: object, result: Any = ctypes.c_int) -> Any:
+        """What the function NAME_`name` of the library returns."""
+        return call(self._loaded, f"{self._name}_{name}", *given, result=result)
 
     def _memory(self, kind: str) -> NDArray[np.uint8]:
         """Memory of C as it may be before anything is in it: no bytes of it are a number."""
-        size = struct_size(self._loaded, kind)
-        memory = np.full(size + _ALIGNED, 255, np.uint8)
-        start = -memory.ctypes.data % _ALIGNED
-        return memory[start : start + size]
+        memory = room(self._loaded, kind)
+        memory[:] = 255
+        return memory
 
-    def values(self, at: Callable[[float, int], object], taus: Sequence[float]) -> NDArray[np.float64]:
+    def values(self, at: Callable[..., object], taus: Sequence[float]) -> NDArray[np.float64]:
+        """All outputs at taus by a function of a tau and where its outputs go: (outputs, len(taus))."""
         columns = np.empty((len(taus), self.outputs), self.real)
         for tau, column in zip(taus, columns, strict=True):
-            at(tau, column.ctypes.data)
+            at(self.real(tau), column)
         return np.ascontiguousarray(columns.T, np.float64)
+
+    def samples(
+        self, name: str, tau0: float, dtau: float, count: int, shape: tuple[int, ...], *of: object
+    ) -> tuple[int, NDArray[np.float64]]:
+        """What a function of samples, `of` a model where it is of one, returns, and all that it writes."""
+        out = np.empty(shape, self.real)
+        return self.call(name, *of, self.real(tau0), self.real(dtau), count, out), out.astype(np.float64)
 
 
 class CompiledModel:
@@ -146,49 +138,47 @@ class CompiledModel:
     @property
     def estimate(self) -> float:
         """What it states of its errors, relative to each output's largest value."""
-        return float(self._program.function("error_estimate", [_WHERE], self._program.number)(self._model.ctypes.data))
+        return float(self._program.call("error_estimate", self._model, result=self._program.number))
 
     def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
         """All outputs at taus by NAME_model_eval: shape (outputs, len(taus)), NaN out of range."""
-        values = self._program.function("model_eval", [_WHERE, self._program.number, _WHERE])
-        return self._program.values(partial(values, self._model.ctypes.data), taus)
+        return self._program.values(partial(self._program.call, "model_eval", self._model), taus)
 
     def sample(self, tau0: float, dtau: float, count: int) -> NDArray[np.float64]:
         """All outputs at tau0 + k dtau by NAME_model_sample: shape (outputs, count), NaN out of range."""
-        out, number = np.empty((self._program.outputs, count), self._program.real), self._program.number
-        sample = self._program.function("model_sample", [_WHERE, number, number, _MANY, _WHERE])
-        sample(self._model.ctypes.data, tau0, dtau, count, out.ctypes.data)
-        return out.astype(np.float64)
+        shape = (self._program.outputs, count)
+        return self._program.samples("model_sample", tau0, dtau, count, shape, self._model)[1]
 
     def peaks(self) -> NDArray[np.float64]:
         """Of each output the least value, its tau, the greatest and its tau, by NAME_model_peaks: (outputs, 2, 2)."""
         out = np.empty((self._program.outputs, 2, 2), self._program.real)
-        self._program.function("model_peaks", [_WHERE, _WHERE])(self._model.ctypes.data, out.ctypes.data)
+        self._program.call("model_peaks", self._model, out)
         return out.astype(np.float64)
 
 
 class CompiledStream:
-    """A state of a stream, which goes on step by step."""
+    """A state of a stream, which goes on step by step.
 
-    def __init__(self, program: CompiledLibrary, state: NDArray[np.uint8]) -> None:
-        self._program, self._state, self.status = program, state, 0
-        number = program.number
-        self._step = program.function("step", [_WHERE, number, _WHERE, _WHERE])
+    `refused` is what made it returned: 0, 1 for parameters that are bad numbers, or 2 where the degree is too low.
+    """
+
+    def __init__(self, program: CompiledLibrary, state: NDArray[np.uint8], refused: int = 0) -> None:
+        self.program, self.state, self.status, self.refused = program, state, 0, refused
 
     def step(self, dtau: float, loads: ArrayLike) -> NDArray[np.float64]:
         """All outputs after dtau, in which loads go straight to `loads`, or jump to them where it is 0.
 
         The largest `status` so far is kept.
         """
-        given, out = np.array(loads, self._program.real), np.empty(self._program.outputs, self._program.real)
-        self.status = max(self.status, self._step(self._state.ctypes.data, dtau, given.ctypes.data, out.ctypes.data))
+        program, out = self.program, np.empty(self.program.outputs, self.program.real)
+        status = program.call("step", self.state, program.real(dtau), np.array(loads, program.real), out)
+        self.status = max(self.status, status)
         return out.astype(np.float64)
 
     @property
     def lost(self) -> float:
         """What it says that polynomials have lost so far, relative to the largest wave."""
-        lost = self._program.function("lost", [_WHERE], self._program.number)
-        return float(lost(self._state.ctypes.data))
+        return float(self.program.call("lost", self.state, result=self.program.number))
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cached_property
 from math import ceil, log2
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +20,11 @@ from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import ModeParameters
 from wavesym.programs.modes.evaluator import modes
 from wavesym.programs.request import Request
-from wavesym.running.native import FAST, address, library, struct_size
+from wavesym.running.native import FAST, call, library, room
 from wavesym.running.sets import FoundSets, no_sets
 from wavesym.running.toolchain import compiler
 from wavesym.targets.files import runtime_sets
 
-_WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
 _BAD = 1
 _MOST_MODES = 600  # of a set that needs more than the scene's own numbers
 _MOST_SHORT = 64.0  # times the tolerance: more modes are not taken at once than that needs
@@ -47,18 +46,13 @@ class ModeSetResponses(NamedTuple):
 
     def rows(self, some: NDArray[np.bool_]) -> ModeSetResponses:
         """Those of some sets."""
-        return ModeSetResponses(
-            self.status[some], self.estimate[some], self.rounding_errors[some], self.peaks[some], self.values[some]
-        )
+        return ModeSetResponses._make(each[some] for each in self)
 
     def put(self, rows: NDArray[np.bool_], others: ModeSetResponses) -> None:
         """Take others for some sets."""
-        self.status[rows], self.estimate[rows], self.rounding_errors[rows] = (
-            others.status,
-            others.estimate,
-            others.rounding_errors,
-        )
-        self.peaks[rows], self.values[rows] = others.peaks, others.values
+        arrays: tuple[Any, ...] = self
+        for own, other in zip(arrays, others, strict=True):
+            own[rows] = other
 
 
 class _Slopes(NamedTuple):
@@ -212,22 +206,14 @@ class ModalSets:
         if name == "load":
             return missed
         unit = np.full(len(given), 0.5) if name == "damping" else np.abs(given[:, parameter])
-        c, relative = self._library(max(self._libraries)), step / unit
-        find = getattr(c, f"{self.model.name}_missed")
-        find.argtypes = [_WHERE, _WHERE, _MANY, _WHERE, _WHERE]
-        numbers, room = np.ascontiguousarray(given), self._room(c)
-        find(address(numbers), address(relative), len(given), address(room), address(missed))
+        c, numbers = self._library(max(self._libraries)), np.ascontiguousarray(given)
+        call(c, f"{self.model.name}_missed", numbers, step / unit, len(given), room(c, "model"), missed, result=None)
         return missed / unit[:, None]
 
     @cached_property
     def _names(self) -> list[str]:
         """The field of each parameter."""
         return [field.name for field in self.fields for _ in field.values]
-
-    def _room(self, c: ctypes.CDLL) -> NDArray[np.uint8]:
-        """That of one model."""
-        room = np.empty(struct_size(c, "model") + 64, np.uint8)
-        return room[-room.ctypes.data % 64 :]
 
     def bounds(self, given: Array) -> FoundSets:
         """The bound of each output, of shape (sets, outputs): that of a program of proved modes, and how far values
@@ -288,11 +274,7 @@ class ModalSets:
 
     def _by_modes(self, doublings: int, given: Array, tau: Array) -> ModeSetResponses:
         """Those by so many modes."""
-        c = self._library(doublings)
-        run = getattr(c, f"{self.model.name}_sets")
-        run.argtypes = [_WHERE, _MANY, _WHERE, _WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE]
-        room, order = self._room(c), np.argsort(tau, kind="stable")
-        numbers, instants = np.ascontiguousarray(given), np.ascontiguousarray(tau[order])
+        c, order = self._library(doublings), np.argsort(tau, kind="stable")
         sets, outputs = len(given), len(self.model.probes)
         found = ModeSetResponses(
             np.empty(sets, np.int32),
@@ -301,8 +283,8 @@ class ModalSets:
             np.full((sets, outputs, 4), np.nan),
             np.full((sets, outputs, len(tau)), np.nan),
         )
-        rows = [address(each) for each in found]
-        run(address(numbers), sets, address(room), address(instants), len(tau), *rows)
+        memory, numbers = room(c, "model"), np.ascontiguousarray(given)
+        call(c, f"{self.model.name}_sets", numbers, sets, memory, tau[order], len(tau), *found, result=None)
         found.status[found.status != _BAD] = 0
         back = np.empty_like(order)
         back[order] = np.arange(len(order))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn
 from warnings import warn
 
 import numpy as np
@@ -22,9 +22,8 @@ from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.labels import SetLabels
 
 if TYPE_CHECKING:
-    from wavesym.mechanics.model import Model
-    from wavesym.programs.runtime.network import RuntimeField
-    from wavesym.running.sets import FoundSets
+    from wavesym.running.mode_sets import ModalSets
+    from wavesym.running.sets import CompiledSets
 
 
 _NONE = np.zeros(0)
@@ -101,24 +100,6 @@ class SetGradients:
     estimates: Mapping[str, Array]
 
 
-class SetsEngine(Protocol):
-    """What computes sets of numbers of a model's `fields` until tau = `tau_max`; arrays are those of `CompiledSets`."""
-
-    fields: tuple[RuntimeField, ...]
-    model: Model
-    tau_max: float
-
-    def values(self, given: Array, tau: Array) -> FoundSets: ...
-
-    def tangents(self, given: Array, tau: Array) -> FoundSets: ...
-
-    def peaks(self, given: Array) -> FoundSets: ...
-
-    def bounds(self, given: Array) -> FoundSets: ...
-
-    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]: ...
-
-
 def compiled_model(program: Program) -> RuntimeModel:
     """What a program with parameters at run time computes, compiled when it is first needed."""
     from wavesym.running.sets import CompiledSets
@@ -136,7 +117,7 @@ class RuntimeModel:
     arrays of other shapes; CompilerError where there is no C compiler. A damping ratio above 1 is warned of.
     """
 
-    def __init__(self, engine: SetsEngine) -> None:
+    def __init__(self, engine: CompiledSets | ModalSets) -> None:
         self._engine = engine
         fields = engine.fields
         self.parameters: Mapping[str, Array] = {

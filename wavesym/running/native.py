@@ -7,6 +7,7 @@ import re
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from wavesym.running.toolchain import compiler
 
 FAST = ("-O3", "-march=native", "-ffp-contract=fast")
+_ALIGNED = 64  # bytes, of vectors
 
 
 @cache
@@ -47,3 +49,40 @@ def address(values: NDArray[np.generic]) -> int:
     """Where an array's values lie; it must be contiguous."""
     assert values.flags.c_contiguous
     return int(values.ctypes.data)
+
+
+def room(loaded: ctypes.CDLL, kind: str) -> NDArray[np.uint8]:
+    """Memory for a struct NAME_`kind`, from a multiple of 64 bytes on."""
+    size = struct_size(loaded, kind)
+    memory = np.empty(size + _ALIGNED, np.uint8)
+    return memory[-memory.ctypes.data % _ALIGNED :][:size]
+
+
+def call(loaded: ctypes.CDLL, name: str, *given: object, result: Any = ctypes.c_int) -> Any:
+    """What a function of a library returns.
+
+    Args:
+        loaded: the library.
+        name: that of the function.
+        given: an array, contiguous, for where its values lie, None for NULL, a bool for an int, any other int for a
+            size_t, a Python float or a number of NumPy for a double or a float; what else ctypes takes.
+        result: the type of what it returns, None for void.
+    """
+    function = loaded[name]  # of this call alone: threads may want other types of it
+    function.restype = result
+    return function(*map(_argument, given))
+
+
+def _argument(given: object) -> object:
+    match given:
+        case None:
+            return ctypes.c_void_p(None)
+        case np.ndarray():
+            return ctypes.c_void_p(address(given))
+        case bool():
+            return ctypes.c_int(given)
+        case int():
+            return ctypes.c_size_t(given)
+        case float():
+            return ctypes.c_double(given)
+    return ctypes.c_float(float(given)) if isinstance(given, np.float32) else given
