@@ -29,38 +29,46 @@ static fmi2Status none(instance *it, const char *what)
     return answer(it, lack(&it->run, what));
 }
 
-/* Functions and values that this model has none of, though simulators look for their names; declared here alone. */
+/* A call of simulation.h. */
+#define CALL(function, arguments, call) \
+    FMI2_FUNCTION(fmi2Status, function, arguments) \
+    { \
+        simulation *const s = &((instance *)c)->run; \
+        return answer((instance *)c, call); \
+    }
+
+/* Functions and values that this model has none of, though simulators look for their names. */
 #define VARIABLES fmi2Component c, const fmi2ValueReference reference[], size_t count
 #define NONE(function, what, arguments) \
-    FMI2_EXPORT fmi2Status FMI2(function) arguments; \
-    fmi2Status FMI2(function) arguments \
+    FMI2_FUNCTION(fmi2Status, function, arguments) \
     { \
         return none((instance *)c, what); \
     }
 #define NO_VALUE(function, what, arguments) \
-    FMI2_EXPORT fmi2Status FMI2(function) arguments; \
-    fmi2Status FMI2(function) arguments \
+    FMI2_FUNCTION(fmi2Status, function, arguments) \
     { \
         return count ? none((instance *)c, what) : fmi2OK; \
     }
 
-const char *FMI2(fmi2GetTypesPlatform)(void)
+FMI2_FUNCTION(const char *, fmi2GetTypesPlatform, (void))
 {
     return "default";
 }
 
-const char *FMI2(fmi2GetVersion)(void)
+FMI2_FUNCTION(const char *, fmi2GetVersion, (void))
 {
     return "2.0";
 }
 
-fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[])
+FMI2_FUNCTION(fmi2Status, fmi2SetDebugLogging,
+              (fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]))
 {
     return fmi2OK;
 }
 
-fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
-                                    const fmi2CallbackFunctions *calls, fmi2Boolean visible, fmi2Boolean logging)
+FMI2_FUNCTION(fmi2Component, fmi2Instantiate,
+              (fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+               const fmi2CallbackFunctions *calls, fmi2Boolean visible, fmi2Boolean logging))
 {
     const char *wrong = "not enough memory";
     instance *it = NULL;
@@ -85,51 +93,29 @@ fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String g
     return it;
 }
 
-void FMI2(fmi2FreeInstance)(fmi2Component c)
+FMI2_FUNCTION(void, fmi2FreeInstance, (fmi2Component c))
 {
     free(c);
 }
 
-fmi2Status FMI2(fmi2SetupExperiment)(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
-                                     fmi2Boolean has_stop, fmi2Real stop)
-{
-    return answer((instance *)c, set_times(&((instance *)c)->run, start, has_stop, stop));
-}
+CALL(fmi2SetupExperiment,
+     (fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start, fmi2Boolean has_stop, fmi2Real stop),
+     set_times(s, start, has_stop, stop))
+CALL(fmi2EnterInitializationMode, (fmi2Component c), begin(s))
+CALL(fmi2ExitInitializationMode, (fmi2Component c), ready(s))
+CALL(fmi2Terminate, (fmi2Component c), finish(s))
 
-fmi2Status FMI2(fmi2EnterInitializationMode)(fmi2Component c)
-{
-    return answer((instance *)c, begin(&((instance *)c)->run));
-}
-
-fmi2Status FMI2(fmi2ExitInitializationMode)(fmi2Component c)
-{
-    return answer((instance *)c, ready(&((instance *)c)->run));
-}
-
-fmi2Status FMI2(fmi2Terminate)(fmi2Component c)
-{
-    return answer((instance *)c, finish(&((instance *)c)->run));
-}
-
-fmi2Status FMI2(fmi2Reset)(fmi2Component c)
+FMI2_FUNCTION(fmi2Status, fmi2Reset, (fmi2Component c))
 {
     reset(&((instance *)c)->run);
     return fmi2OK;
 }
 
-fmi2Status FMI2(fmi2GetReal)(fmi2Component c, const fmi2ValueReference reference[], size_t count, fmi2Real value[])
-{
-    return answer((instance *)c, get_reals(&((instance *)c)->run, reference, count, value));
-}
+CALL(fmi2GetReal, (VARIABLES, fmi2Real value[]), get_reals(s, reference, count, value))
+CALL(fmi2SetReal, (VARIABLES, const fmi2Real value[]), set_reals(s, reference, count, value))
 
-fmi2Status FMI2(fmi2SetReal)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                             const fmi2Real value[])
-{
-    return answer((instance *)c, set_reals(&((instance *)c)->run, reference, count, value));
-}
-
-fmi2Status FMI2(fmi2GetBoolean)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                fmi2Boolean value[])
+FMI2_FUNCTION(fmi2Status, fmi2GetBoolean,
+              (fmi2Component c, const fmi2ValueReference reference[], size_t count, fmi2Boolean value[]))
 {
     instance *const it = (instance *)c;
     const verdict found = may_be_linear(&it->run, reference, count, 0);
@@ -139,8 +125,8 @@ fmi2Status FMI2(fmi2GetBoolean)(fmi2Component c, const fmi2ValueReference refere
     return answer(it, found);
 }
 
-fmi2Status FMI2(fmi2SetBoolean)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                const fmi2Boolean value[])
+FMI2_FUNCTION(fmi2Status, fmi2SetBoolean,
+              (fmi2Component c, const fmi2ValueReference reference[], size_t count, const fmi2Boolean value[]))
 {
     instance *const it = (instance *)c;
     const verdict found = may_be_linear(&it->run, reference, count, 1);
@@ -154,39 +140,25 @@ NO_VALUE(fmi2GetInteger, "an integer", (VARIABLES, fmi2Integer value[]))
 NO_VALUE(fmi2SetInteger, "an integer", (VARIABLES, const fmi2Integer value[]))
 NO_VALUE(fmi2GetString, "a string", (VARIABLES, fmi2String value[]))
 NO_VALUE(fmi2SetString, "a string", (VARIABLES, const fmi2String value[]))
+CALL(fmi2GetFMUstate, (fmi2Component c, fmi2FMUstate *state), keep(s, &s->now, state))
+CALL(fmi2SetFMUstate, (fmi2Component c, fmi2FMUstate state), put_back(s, state))
 
-fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component c, fmi2FMUstate *state)
-{
-    return answer((instance *)c, keep(&((instance *)c)->run, &((instance *)c)->run.now, state));
-}
-
-fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
-{
-    return answer((instance *)c, put_back(&((instance *)c)->run, state));
-}
-
-fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
+FMI2_FUNCTION(fmi2Status, fmi2FreeFMUstate, (fmi2Component c, fmi2FMUstate *state))
 {
     give_up(state);
     return fmi2OK;
 }
 
-fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state, size_t *size)
+FMI2_FUNCTION(fmi2Status, fmi2SerializedFMUstateSize, (fmi2Component c, fmi2FMUstate state, size_t *size))
 {
     *size = KEPT_SIZE;
     return fmi2OK;
 }
 
-fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
-{
-    return answer((instance *)c, serialize(&((instance *)c)->run, state, bytes, size));
-}
-
-fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
-{
-    return answer((instance *)c, deserialize(&((instance *)c)->run, bytes, size, state));
-}
-
+CALL(fmi2SerializeFMUstate, (fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size),
+     serialize(s, state, bytes, size))
+CALL(fmi2DeSerializeFMUstate, (fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state),
+     deserialize(s, bytes, size, state))
 NONE(fmi2GetDirectionalDerivative, "a directional derivative",
      (fmi2Component c, const fmi2ValueReference unknowns[], size_t rows, const fmi2ValueReference knowns[],
       size_t columns, const fmi2Real seed[], fmi2Real product[]))
@@ -194,15 +166,10 @@ NO_VALUE(fmi2SetRealInputDerivatives, "an input's derivative (canInterpolateInpu
          (VARIABLES, const fmi2Integer order[], const fmi2Real value[]))
 NO_VALUE(fmi2GetRealOutputDerivatives, "an output's derivative (maxOutputDerivativeOrder is 0)",
          (VARIABLES, const fmi2Integer order[], fmi2Real value[]))
-
-fmi2Status FMI2(fmi2DoStep)(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean never_back)
-{
-    return answer((instance *)c, advance(&((instance *)c)->run, at, step));
-}
-
+CALL(fmi2DoStep, (fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean never_back), advance(s, at, step))
 NONE(fmi2CancelStep, "a step that runs while others do", (fmi2Component c))
 
-fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
+FMI2_FUNCTION(fmi2Status, fmi2GetRealStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Real *value))
 {
     if (kind != fmi2LastSuccessfulTime) {
         return none((instance *)c, "such a status");
@@ -215,7 +182,7 @@ NONE(fmi2GetStatus, "a step that runs while others do", (fmi2Component c, const 
 NONE(fmi2GetIntegerStatus, "a status that is an integer",
      (fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value))
 
-fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
+FMI2_FUNCTION(fmi2Status, fmi2GetBooleanStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value))
 {
     if (kind != fmi2Terminated) {
         return none((instance *)c, "such a status");

@@ -26,6 +26,11 @@
 #define FMI2(name) name
 #endif
 
+/* A function of the standard, declared as it is exported; what it does follows. */
+#define FMI2_FUNCTION(type, name, parameters) \
+    FMI2_EXPORT type FMI2(name) parameters; \
+    type FMI2(name) parameters
+
 typedef void *fmi2Component;
 typedef void *fmi2ComponentEnvironment;
 typedef void *fmi2FMUstate;
@@ -48,34 +53,5 @@ typedef struct {
     void (*stepFinished)(fmi2ComponentEnvironment, fmi2Status);
     fmi2ComponentEnvironment componentEnvironment;
 } fmi2CallbackFunctions;
-
-FMI2_EXPORT const char *FMI2(fmi2GetTypesPlatform)(void);
-FMI2_EXPORT const char *FMI2(fmi2GetVersion)(void);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component, fmi2Boolean, size_t, const fmi2String[]);
-
-FMI2_EXPORT fmi2Component FMI2(fmi2Instantiate)(fmi2String, fmi2Type, fmi2String, fmi2String,
-                                                const fmi2CallbackFunctions *, fmi2Boolean, fmi2Boolean);
-FMI2_EXPORT void FMI2(fmi2FreeInstance)(fmi2Component);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetupExperiment)(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real);
-FMI2_EXPORT fmi2Status FMI2(fmi2EnterInitializationMode)(fmi2Component);
-FMI2_EXPORT fmi2Status FMI2(fmi2ExitInitializationMode)(fmi2Component);
-FMI2_EXPORT fmi2Status FMI2(fmi2Terminate)(fmi2Component);
-FMI2_EXPORT fmi2Status FMI2(fmi2Reset)(fmi2Component);
-
-FMI2_EXPORT fmi2Status FMI2(fmi2GetReal)(fmi2Component, const fmi2ValueReference[], size_t, fmi2Real[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetBoolean)(fmi2Component, const fmi2ValueReference[], size_t, fmi2Boolean[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetReal)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Real[]);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetBoolean)(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Boolean[]);
-
-FMI2_EXPORT fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component, fmi2FMUstate *);
-FMI2_EXPORT fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component, fmi2FMUstate);
-FMI2_EXPORT fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component, fmi2FMUstate *);
-FMI2_EXPORT fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component, fmi2FMUstate, size_t *);
-FMI2_EXPORT fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component, fmi2FMUstate, fmi2Byte[], size_t);
-FMI2_EXPORT fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component, const fmi2Byte[], size_t, fmi2FMUstate *);
-
-FMI2_EXPORT fmi2Status FMI2(fmi2DoStep)(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component, const fmi2StatusKind, fmi2Real *);
-FMI2_EXPORT fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component, const fmi2StatusKind, fmi2Boolean *);
 
 #endif

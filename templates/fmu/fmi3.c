@@ -29,17 +29,23 @@ static fmi3Status none(fmi3Instance of, const char *what)
     return answer(it, lack(&it->run, what));
 }
 
-/* Functions and values that this model has none of, though simulators look for their names; declared here alone. */
+/* A call of simulation.h. */
+#define CALL(function, arguments, call) \
+    FMI3_FUNCTION(fmi3Status, function, arguments) \
+    { \
+        simulation *const s = &((instance *)it)->run; \
+        return answer((instance *)it, call); \
+    }
+
+/* Functions and values that this model has none of, though simulators look for their names. */
 #define VARIABLES fmi3Instance it, const fmi3ValueReference reference[], size_t references
 #define NONE(function, what, arguments) \
-    FMI3_EXPORT fmi3Status FMI3(function) arguments; \
-    fmi3Status FMI3(function) arguments \
+    FMI3_FUNCTION(fmi3Status, function, arguments) \
     { \
         return none(it, what); \
     }
 #define NO_VALUE(function, what, arguments) \
-    FMI3_EXPORT fmi3Status FMI3(function) arguments; \
-    fmi3Status FMI3(function) arguments \
+    FMI3_FUNCTION(fmi3Status, function, arguments) \
     { \
         return references ? none(it, what) : fmi3OK; \
     }
@@ -50,21 +56,22 @@ static verdict single(simulation *s, size_t references, size_t count)
     return references == count ? FINE : refuse(s, "nValues", (double)count, "as many as references");
 }
 
-const char *FMI3(fmi3GetVersion)(void)
+FMI3_FUNCTION(const char *, fmi3GetVersion, (void))
 {
     return "3.0";
 }
 
-fmi3Status FMI3(fmi3SetDebugLogging)(fmi3Instance it, fmi3Boolean on, size_t count, const fmi3String categories[])
+FMI3_FUNCTION(fmi3Status, fmi3SetDebugLogging,
+              (fmi3Instance it, fmi3Boolean on, size_t count, const fmi3String categories[]))
 {
     return fmi3OK;
 }
 
-fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token, fmi3String resources,
-                                               fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events,
-                                               fmi3Boolean early, const fmi3ValueReference intermediate[],
-                                               size_t intermediates, fmi3InstanceEnvironment environment,
-                                               fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update)
+FMI3_FUNCTION(fmi3Instance, fmi3InstantiateCoSimulation,
+              (fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+               fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference intermediate[],
+               size_t intermediates, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+               fmi3IntermediateUpdateCallback update))
 {
     const char *wrong = "not enough memory";
     instance *it = NULL;
@@ -87,9 +94,9 @@ fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token
     return it;
 }
 
-fmi3Instance FMI3(fmi3InstantiateModelExchange)(fmi3String name, fmi3String token, fmi3String resources,
-                                                fmi3Boolean visible, fmi3Boolean logging,
-                                                fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
+FMI3_FUNCTION(fmi3Instance, fmi3InstantiateModelExchange,
+              (fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+               fmi3InstanceEnvironment environment, fmi3LogMessageCallback log))
 {
     if (log) {
         log(environment, fmi3Error, "logStatusError", "model exchange: asked for, co-simulation expected");
@@ -97,39 +104,32 @@ fmi3Instance FMI3(fmi3InstantiateModelExchange)(fmi3String name, fmi3String toke
     return NULL;
 }
 
-fmi3Instance FMI3(fmi3InstantiateScheduledExecution)(fmi3String name, fmi3String token, fmi3String resources,
-                                                     fmi3Boolean visible, fmi3Boolean logging,
-                                                     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
-                                                     fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
-                                                     fmi3UnlockPreemptionCallback unlock)
+FMI3_FUNCTION(fmi3Instance, fmi3InstantiateScheduledExecution,
+              (fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+               fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
+               fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock))
 {
     return FMI3(fmi3InstantiateModelExchange)(name, token, resources, visible, logging, environment, log);
 }
 
-void FMI3(fmi3FreeInstance)(fmi3Instance it)
+FMI3_FUNCTION(void, fmi3FreeInstance, (fmi3Instance it))
 {
     free(it);
 }
 
-fmi3Status FMI3(fmi3EnterInitializationMode)(fmi3Instance of, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
-                                             fmi3Float64 start, fmi3Boolean has_stop, fmi3Float64 stop)
+FMI3_FUNCTION(fmi3Status, fmi3EnterInitializationMode,
+              (fmi3Instance of, fmi3Boolean has_tolerance, fmi3Float64 tolerance, fmi3Float64 start,
+               fmi3Boolean has_stop, fmi3Float64 stop))
 {
     instance *const it = (instance *)of;
     const verdict found = set_times(&it->run, start, has_stop, stop);
     return answer(it, found == FINE ? begin(&it->run) : found);
 }
 
-fmi3Status FMI3(fmi3ExitInitializationMode)(fmi3Instance it)
-{
-    return answer((instance *)it, ready(&((instance *)it)->run));
-}
+CALL(fmi3ExitInitializationMode, (fmi3Instance it), ready(s))
+CALL(fmi3Terminate, (fmi3Instance it), finish(s))
 
-fmi3Status FMI3(fmi3Terminate)(fmi3Instance it)
-{
-    return answer((instance *)it, finish(&((instance *)it)->run));
-}
-
-fmi3Status FMI3(fmi3Reset)(fmi3Instance it)
+FMI3_FUNCTION(fmi3Status, fmi3Reset, (fmi3Instance it))
 {
     reset(&((instance *)it)->run);
     return fmi3OK;
@@ -173,8 +173,6 @@ FMI3_SET(Boolean)
 
 /* There are no values of other types. */
 #define NO_TYPE(type) \
-    FMI3_GET(type); \
-    FMI3_SET(type); \
     FMI3_GET(type) \
     { \
         return references ? none(it, "a variable of type " #type) : fmi3OK; \
@@ -205,41 +203,29 @@ NONE(fmi3GetNumberOfVariableDependencies, "a list of dependencies while it runs"
 NONE(fmi3GetVariableDependencies, "a list of dependencies while it runs",
      (fmi3Instance it, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference on[], size_t places[],
       fmi3DependencyKind kind[], size_t count))
+CALL(fmi3GetFMUState, (fmi3Instance it, fmi3FMUState *state), keep(s, &s->now, state))
+CALL(fmi3SetFMUState, (fmi3Instance it, fmi3FMUState state), put_back(s, state))
 
-fmi3Status FMI3(fmi3GetFMUState)(fmi3Instance it, fmi3FMUState *state)
-{
-    return answer((instance *)it, keep(&((instance *)it)->run, &((instance *)it)->run.now, state));
-}
-
-fmi3Status FMI3(fmi3SetFMUState)(fmi3Instance it, fmi3FMUState state)
-{
-    return answer((instance *)it, put_back(&((instance *)it)->run, state));
-}
-
-fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance it, fmi3FMUState *state)
+FMI3_FUNCTION(fmi3Status, fmi3FreeFMUState, (fmi3Instance it, fmi3FMUState *state))
 {
     give_up(state);
     return fmi3OK;
 }
 
-fmi3Status FMI3(fmi3SerializedFMUStateSize)(fmi3Instance it, fmi3FMUState state, size_t *size)
+FMI3_FUNCTION(fmi3Status, fmi3SerializedFMUStateSize, (fmi3Instance it, fmi3FMUState state, size_t *size))
 {
     *size = KEPT_SIZE;
     return fmi3OK;
 }
 
-fmi3Status FMI3(fmi3SerializeFMUState)(fmi3Instance it, fmi3FMUState state, fmi3Byte bytes[], size_t size)
-{
-    return answer((instance *)it, serialize(&((instance *)it)->run, state, bytes, size));
-}
+CALL(fmi3SerializeFMUState, (fmi3Instance it, fmi3FMUState state, fmi3Byte bytes[], size_t size),
+     serialize(s, state, bytes, size))
+CALL(fmi3DeserializeFMUState, (fmi3Instance it, const fmi3Byte bytes[], size_t size, fmi3FMUState *state),
+     deserialize(s, bytes, size, state))
 
-fmi3Status FMI3(fmi3DeserializeFMUState)(fmi3Instance it, const fmi3Byte bytes[], size_t size, fmi3FMUState *state)
-{
-    return answer((instance *)it, deserialize(&((instance *)it)->run, bytes, size, state));
-}
-
-fmi3Status FMI3(fmi3DoStep)(fmi3Instance of, fmi3Float64 at, fmi3Float64 step, fmi3Boolean never_back,
-                            fmi3Boolean *event, fmi3Boolean *end, fmi3Boolean *early, fmi3Float64 *reached)
+FMI3_FUNCTION(fmi3Status, fmi3DoStep,
+              (fmi3Instance of, fmi3Float64 at, fmi3Float64 step, fmi3Boolean never_back, fmi3Boolean *event,
+               fmi3Boolean *end, fmi3Boolean *early, fmi3Float64 *reached))
 {
     instance *const it = (instance *)of;
     const fmi3Status status = answer(it, advance(&it->run, at, step));

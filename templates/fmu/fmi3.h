@@ -28,6 +28,11 @@
 #define FMI3(name) name
 #endif
 
+/* A function of the standard, declared as it is exported; what it does follows. */
+#define FMI3_FUNCTION(type, name, parameters) \
+    FMI3_EXPORT type FMI3(name) parameters; \
+    type FMI3(name) parameters
+
 typedef void *fmi3Instance;
 typedef void *fmi3InstanceEnvironment;
 typedef void *fmi3FMUState;
@@ -69,47 +74,10 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 
 /* Values of a type, by their references. */
 #define FMI3_GET(type) \
-    FMI3_EXPORT fmi3Status FMI3(fmi3Get##type)(fmi3Instance it, const fmi3ValueReference reference[], \
-                                               size_t references, fmi3##type value[], size_t count)
+    FMI3_FUNCTION(fmi3Status, fmi3Get##type, (fmi3Instance it, const fmi3ValueReference reference[], \
+                                             size_t references, fmi3##type value[], size_t count))
 #define FMI3_SET(type) \
-    FMI3_EXPORT fmi3Status FMI3(fmi3Set##type)(fmi3Instance it, const fmi3ValueReference reference[], \
-                                               size_t references, const fmi3##type value[], size_t count)
-
-FMI3_EXPORT const char *FMI3(fmi3GetVersion)(void);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetDebugLogging)(fmi3Instance, fmi3Boolean, size_t, const fmi3String[]);
-
-FMI3_EXPORT fmi3Instance FMI3(fmi3InstantiateModelExchange)(fmi3String, fmi3String, fmi3String, fmi3Boolean,
-                                                            fmi3Boolean, fmi3InstanceEnvironment,
-                                                            fmi3LogMessageCallback);
-FMI3_EXPORT fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
-                                                           fmi3Boolean, fmi3Boolean, const fmi3ValueReference[], size_t,
-                                                           fmi3InstanceEnvironment, fmi3LogMessageCallback,
-                                                           fmi3IntermediateUpdateCallback);
-FMI3_EXPORT fmi3Instance FMI3(fmi3InstantiateScheduledExecution)(fmi3String, fmi3String, fmi3String, fmi3Boolean,
-                                                                 fmi3Boolean, fmi3InstanceEnvironment,
-                                                                 fmi3LogMessageCallback, fmi3ClockUpdateCallback,
-                                                                 fmi3LockPreemptionCallback,
-                                                                 fmi3UnlockPreemptionCallback);
-FMI3_EXPORT void FMI3(fmi3FreeInstance)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3EnterInitializationMode)(fmi3Instance, fmi3Boolean, fmi3Float64, fmi3Float64,
-                                                         fmi3Boolean, fmi3Float64);
-FMI3_EXPORT fmi3Status FMI3(fmi3ExitInitializationMode)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3Terminate)(fmi3Instance);
-FMI3_EXPORT fmi3Status FMI3(fmi3Reset)(fmi3Instance);
-
-FMI3_GET(Float64);
-FMI3_GET(Boolean);
-FMI3_SET(Float64);
-FMI3_SET(Boolean);
-
-FMI3_EXPORT fmi3Status FMI3(fmi3GetFMUState)(fmi3Instance, fmi3FMUState *);
-FMI3_EXPORT fmi3Status FMI3(fmi3SetFMUState)(fmi3Instance, fmi3FMUState);
-FMI3_EXPORT fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance, fmi3FMUState *);
-FMI3_EXPORT fmi3Status FMI3(fmi3SerializedFMUStateSize)(fmi3Instance, fmi3FMUState, size_t *);
-FMI3_EXPORT fmi3Status FMI3(fmi3SerializeFMUState)(fmi3Instance, fmi3FMUState, fmi3Byte[], size_t);
-FMI3_EXPORT fmi3Status FMI3(fmi3DeserializeFMUState)(fmi3Instance, const fmi3Byte[], size_t, fmi3FMUState *);
-
-FMI3_EXPORT fmi3Status FMI3(fmi3DoStep)(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean *,
-                                        fmi3Boolean *, fmi3Boolean *, fmi3Float64 *);
+    FMI3_FUNCTION(fmi3Status, fmi3Set##type, (fmi3Instance it, const fmi3ValueReference reference[], \
+                                             size_t references, const fmi3##type value[], size_t count))
 
 #endif

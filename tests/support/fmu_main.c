@@ -3,8 +3,27 @@
  * where parameters, loads and outputs are value references. Compiled with -DVERSION=2 or 3. */
 #if VERSION == 2
 #include "fmi2.h"
+fmi2Component fmi2Instantiate(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions *, fmi2Boolean,
+                              fmi2Boolean);
+void fmi2FreeInstance(fmi2Component);
+fmi2Status fmi2SetupExperiment(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real);
+fmi2Status fmi2EnterInitializationMode(fmi2Component);
+fmi2Status fmi2ExitInitializationMode(fmi2Component);
+fmi2Status fmi2GetReal(fmi2Component, const fmi2ValueReference[], size_t, fmi2Real[]);
+fmi2Status fmi2SetReal(fmi2Component, const fmi2ValueReference[], size_t, const fmi2Real[]);
+fmi2Status fmi2DoStep(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean);
 #else
 #include "fmi3.h"
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean, fmi3Boolean,
+                                         fmi3Boolean, const fmi3ValueReference[], size_t, fmi3InstanceEnvironment,
+                                         fmi3LogMessageCallback, fmi3IntermediateUpdateCallback);
+void fmi3FreeInstance(fmi3Instance);
+fmi3Status fmi3EnterInitializationMode(fmi3Instance, fmi3Boolean, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Float64);
+fmi3Status fmi3ExitInitializationMode(fmi3Instance);
+fmi3Status fmi3GetFloat64(fmi3Instance, const fmi3ValueReference[], size_t, fmi3Float64[], size_t);
+fmi3Status fmi3SetFloat64(fmi3Instance, const fmi3ValueReference[], size_t, const fmi3Float64[], size_t);
+fmi3Status fmi3DoStep(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean *, fmi3Boolean *, fmi3Boolean *,
+                      fmi3Float64 *);
 #endif
 
 #include <stdio.h>
@@ -20,7 +39,7 @@
 #define FIND(library, name) dlsym(library, name)
 #endif
 
-/* A function of the library, of the type that the header gives it. */
+/* A function of the library, of the type that the standard gives it. */
 #define CALL(name) ((__typeof__(&name))FIND(library, #name))
 #define NEED(call) \
     if ((call) != 0) { \

@@ -120,7 +120,8 @@ def test_our_headers_agree_with_those_of_the_standard(version, tmp_path):
     number = version[-1]
     strict(version, tmp_path)
     theirs = Path(fmpy.__file__).parent / "c-code"
-    shim = f'#include "fmi{number}Functions.h"\n#define FMI{number}(name) name\n#define FMI{number}_EXPORT\n'
+    shim = f'#include "fmi{number}Functions.h"\n#define FMI{number}(name) name\n'
+    shim += f"#define FMI{number}_FUNCTION(type, name, parameters) type name parameters\n"
     if number == "3":
         typed = "(fmi3Instance it, const fmi3ValueReference reference[], size_t references, "
         shim += f"#define FMI3_GET(type) fmi3Status fmi3Get##type{typed}fmi3##type value[], size_t count)\n"
