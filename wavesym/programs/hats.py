@@ -30,7 +30,7 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.schemes import names_read
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
-from wavesym.programs.tables import Tables
+from wavesym.programs.tables import Tables, firsts
 from wavesym.progress import warn_long
 
 _MOST = 100_000  # samples of a record
@@ -167,25 +167,27 @@ class HatMarch(Form):
 
     @cached_property
     def tables(self) -> Tables:
-        """The numbers of its program, those of all marches one after the other."""
-        marches = [march.tables for march in self.marches]
-        names, _ = names_read(MarchScheme, marches[0], self.marches[0].constants, self.tau_max)
-        made = {name: tuple(number for one in marches for number in one[name]) for name in names}
+        """The numbers of its program: those of each march, and the records."""
         samples = [record.samples for record in self.records]
-        firsts = np.cumsum([0, *map(len, samples)]).tolist()
+        made = {f"{k}.{name}": march.tables[name] for k, march in enumerate(self.marches) for name in self._names[0]}
         return made | {
-            "extent": tuple(len(one[name]) for one in marches for name in names),
-            "constant": tuple(float(march.constants[name]) for march in self.marches for name in HatScheme.OF_MARCH),
             "spacing": tuple(part for record in self.records for part in _parts(record.spacing)),
             "begin_at": tuple(part for record in self.records for part in _parts(record.begin)),
-            "first_sample": tuple(firsts),
+            "first_sample": firsts(map(len, samples)),
             "sample": tuple(nearest(value) for of in samples for value in of),
         }
 
-    @property
+    @cached_property
     def constants(self) -> dict[str, float]:
-        """Its single number."""
-        return {"rest": self.rest}
+        """Its single numbers: how many marches are of no record, and are in all, and those of each."""
+        of = {f"{k}.{name}": march.constants[name] for k, march in enumerate(self.marches) for name in self._names[1]}
+        return {"rest": self.rest, "marches": len(self.marches), **of}
+
+    @cached_property
+    def _names(self) -> tuple[list[str], list[str]]:
+        """The tables and the single numbers that a march is read from."""
+        march = self.marches[0]
+        return names_read(MarchScheme, march.tables, march.constants, self.tau_max)
 
     @cached_property
     def scheme(self) -> HatScheme:

@@ -29,11 +29,14 @@ def files(scene: Description, program: Program) -> dict[str, str]:
 
     scheme = SCHEMES[program.kernel]
     names, numbers = names_read(scheme, program.tables, program.constants, program.tau_max)
-    comments = _comments(program.kernel, names)
+    called = {name: name.rpartition(".")[2] for name in names}  # in its march, where a program is of several
+    comments = _comments(program.kernel, [*called.values()])
     text = render(
         "numpy/program.py.j2",
         scene=scene,
-        tables={name: (comments.get(name, ()), lines(literals(program.tables[name]), _WIDTH)) for name in names},
+        tables={
+            name: (comments.pop(own, ()), lines(literals(program.tables[name]), _WIDTH)) for name, own in called.items()
+        },
         constants=dict(zip(numbers, literals(program.constants[name] for name in numbers), strict=True)),
         scheme="\n\n\n".join(map(_text, (Scheme, *PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,

@@ -1,8 +1,8 @@
 """The arithmetic of programs in NumPy: run here on a program's tables, and written into generated Python as it stands.
 
-So the files of this folder import nothing but NumPy. What stands above their first class is left out in what is
-generated. Each scheme is made from tables and single numbers, of which it reads what it needs, tau_max, and the type of
-all values: np.float64 or np.float32.
+So the files of this folder need nothing but NumPy, and to know what an `Array` is. What stands above their first class
+is left out in what is generated. Each scheme is made from tables and single numbers, of which it reads what it needs,
+tau_max, and the type of all values: np.float64 or np.float32.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The closed form in NumPy."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.schemes.scheme import Scheme
 
 
@@ -21,7 +21,7 @@ class ClosedScheme(Scheme):
         )
         self.outputs = len(self._first_pulse) - 1
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         out = np.zeros((self.outputs, tau.size), self.real)
         for row, first, end in zip(out, self._first_pulse, self._first_pulse[1:], strict=False):
             for pulse in range(first, end):

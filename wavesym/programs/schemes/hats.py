@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
 from wavesym.programs.schemes.scheme import Scheme
 
@@ -15,30 +16,26 @@ class HatScheme(Scheme):
         output(tau) = rest(tau) + sum over records j and samples i of sample[j, i] hat_j(tau - begin_j - i spacing_j)
 
     hat_j is what a load does that is 0 at 0, 1 at spacing_j, 0 from 2 spacing_j on, and linear between; `rest`, where
-    there is one, is all that is no record. Each is a march of its own (MarchScheme), and their tables stand one after
-    the other: `extent` has the length of each table of the first march, then those of the next; `constant` the same of
-    single numbers. A spacing is the sum of two numbers, as is the instant at which a record begins.
+    there is one, is all that is no record. Each is a march of its own (MarchScheme): the numbers of the first are
+    called 0.NAME, those of the next 1.NAME. A spacing is the sum of two numbers, as is the instant at which a record
+    begins.
     """
-
-    OWN = ("extent", "constant", "spacing", "begin_at", "first_sample", "sample")
-    """The tables that are none of a march."""
-    OF_MARCH = ("degree", "step", "span", "forces")
-    """The single numbers of a march."""
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real
-        names = [name for name in tables if name not in self.OWN]
-        extents = np.array(tables["extent"], int).reshape(-1, len(names))
-        ends = np.cumsum(np.vstack([np.zeros_like(extents[:1]), extents]), axis=0)
-        numbers = np.array(tables["constant"], real).reshape(len(extents), -1).tolist()
+
+        def names(all_names: list[str], march: int) -> dict[str, str]:
+            """Those of the numbers of a march, by what it calls them."""
+            return {name.partition(".")[2]: name for name in all_names if name.startswith(f"{march}.")}
+
         marches = [
             MarchScheme(
-                {name: tables[name][a:b] for name, a, b in zip(names, ends[k], ends[k + 1], strict=True)},
-                dict(zip(self.OF_MARCH, numbers[k], strict=True)),
+                {name: tables[full] for name, full in names([*tables], k).items()},
+                {name: constants[full] for name, full in names([*constants], k).items()},
                 self.tau_max,
                 real,
             )
-            for k in range(len(extents))
+            for k in range(int(constants["marches"]))
         ]
         rest = int(constants["rest"])
         spacing, begin = (np.array(tables[name], real).reshape(-1, 2).tolist() for name in ("spacing", "begin_at"))
@@ -50,18 +47,18 @@ class HatScheme(Scheme):
         self._rest = marches[:rest]
         self.outputs = marches[0].outputs
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         first, *others = [*(rest.evaluate(tau) for rest in self._rest), *(hats.evaluate(tau) for hats in self._records)]
         return np.asarray(sum(others, first))
 
-    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def each(self, tau: Array) -> Array:
         """Each output at instants of its own in range: tau and values are (outputs, n)."""
         flat, back = np.unique(tau, return_inverse=True)
         own = back.reshape(tau.shape)
         out = sum((np.take_along_axis(rest.evaluate(flat), own, axis=1) for rest in self._rest), np.zeros(tau.shape))
         return np.asarray(sum((record.each(tau) for record in self._records), out))
 
-    def evenly(self, step: float) -> NDArray[np.float64]:
+    def evenly(self, step: float) -> Array:
         """Instants of the horizon, no more than `step` apart, that lie alike between the samples of the first record.
 
         There is an even number of equal steps from sample to sample, and at both ends. Values there take one march, and
@@ -86,9 +83,7 @@ class ShiftedHats:
     NEAR = 2.0**-51
     """Phases that differ by no more, in parts of the horizon, are one."""
 
-    def __init__(
-        self, march: MarchScheme, spacing: list[float], begin: list[float], sample: NDArray[np.float64]
-    ) -> None:
+    def __init__(self, march: MarchScheme, spacing: list[float], begin: list[float], sample: Array) -> None:
         self._march, self._begin, self._sample = march, begin, sample
         # multiples of the first part are exact
         high = spacing[0]
@@ -100,7 +95,7 @@ class ShiftedHats:
         self._windows = int(march.places(np.array([march.tau_max]))[0][0]) + 1
         self._whole: list[WindowBlock] = []
 
-    def evenly(self, step: float) -> NDArray[np.float64]:
+    def evenly(self, step: float) -> Array:
         """As HatScheme has it."""
         parts = 2 * int(np.ceil(self._spacing / (2 * step)))
         begin, last = self._begin[0], self._march.tau_max
@@ -110,7 +105,7 @@ class ShiftedHats:
         ends = (np.linspace(low, high, parts + 1) for low, high in ((0.0, starts[0]), (starts[-1], last)))
         return np.unique(np.clip(np.concatenate([*ends, taus.ravel()]), 0.0, last))
 
-    def evaluate(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def evaluate(self, tau: Array) -> Array:
         """All outputs at tau: (outputs, tau.size)."""
         out = np.zeros((self._march.outputs, tau.size))
         latest, phase = self._locate_hats(tau)
@@ -132,7 +127,7 @@ class ShiftedHats:
                 out[:, group] = self._convolve(response)[:, latest[group]]
         return out
 
-    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def each(self, tau: Array) -> Array:
         """Each output at instants of its own: tau and values are (outputs, n). All of them take one march."""
         latest, phase = self._locate_hats(tau)
         out = np.zeros(tau.shape)
@@ -143,7 +138,7 @@ class ShiftedHats:
                     row += self._weigh(latest[output], q, m, values[0])
         return out
 
-    def _locate_hats(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
+    def _locate_hats(self, tau: Array) -> tuple[NDArray[np.int_], Array]:
         """Of each tau the number of the hat that began last, and how long ago."""
         since, lost = _difference(tau, self._begin[0])
         lost = lost - self._begin[1]
@@ -154,14 +149,12 @@ class ShiftedHats:
         after = phase > self._spacing - self._near
         return (number + after).astype(int), np.where(after, 0.0, np.maximum(phase, 0.0))
 
-    def _phase(
-        self, since: NDArray[np.float64], lost: NDArray[np.float64], number: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _phase(self, since: Array, lost: Array, number: Array) -> Array:
         """since + lost - number spacing, rounded once."""
         phase, more = _difference(since, number * self._high)
         return np.asarray(phase + ((lost + more) - number * self._low))
 
-    def _phase_edges(self, phase: NDArray[np.float64]) -> list[int]:
+    def _phase_edges(self, phase: Array) -> list[int]:
         """Where, in order, a phase begins that differs from the one before by more than rounding makes of one."""
         found = []
         first = 0
@@ -183,12 +176,8 @@ class ShiftedHats:
             yield block
 
     def _read(
-        self,
-        block: WindowBlock,
-        latest: NDArray[np.int_],
-        phase: NDArray[np.float64],
-        outputs: range | None = None,
-    ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]]":
+        self, block: WindowBlock, latest: NDArray[np.int_], phase: Array, outputs: range | None = None
+    ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], Array]]":
         """What a block has of the response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and all
         outputs, or some; some instants at a time."""
         step = float(self._march.step)
@@ -206,9 +195,7 @@ class ShiftedHats:
             here = (window >= block.first) & (window < until)
             yield q[here], m[here], block.read_places(window[here], place[here], t[here], outputs)
 
-    def _places(
-        self, m: NDArray[np.int_], phase: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+    def _places(self, m: NDArray[np.int_], phase: Array) -> tuple[NDArray[np.int_], NDArray[np.int_], Array]:
         """Of phase + m spacing what MarchScheme.places says, without the rounding of a large number."""
         march = self._march
         far = m * self._high
@@ -219,7 +206,7 @@ class ShiftedHats:
         place = np.searchsorted(march.begin, t, side="right") - 1
         return cycle.astype(int) * len(march.begin) + place, place, t
 
-    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _single(self, latest: NDArray[np.int_], phase: Array) -> Array:
         """Outputs at instants of different phases, added up hat by hat."""
         out = np.zeros((self._march.outputs, latest.size))
         for block in self._blocks():
@@ -228,13 +215,11 @@ class ShiftedHats:
                     total += self._weigh(latest, q, m, row)
         return out
 
-    def _weigh(
-        self, latest: NDArray[np.int_], q: NDArray[np.int_], m: NDArray[np.int_], values: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _weigh(self, latest: NDArray[np.int_], q: NDArray[np.int_], m: NDArray[np.int_], values: Array) -> Array:
         """What hats add to instants: values to those q, each times the sample of the hat m before the latest."""
         return np.asarray(np.bincount(q, values * self._sample[latest[q] - m], minlength=latest.size), np.float64)
 
-    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _responses(self, latest: NDArray[np.int_], phase: Array) -> Array:
         """Those to one hat at all m, for some phases: (phases, outputs, m)."""
         made = np.zeros((latest.size, self._march.outputs, int(latest.max()) + 1))
         for block in self._blocks():
@@ -242,7 +227,7 @@ class ShiftedHats:
                 made[q, :, m] = values.T
         return made
 
-    def _convolve(self, response: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _convolve(self, response: Array) -> Array:
         """sum over i of sample[i] response[:, n - i]: (outputs, n)."""
         count = response.shape[1]
         size = 1 << (2 * count - 1).bit_length()
@@ -250,9 +235,7 @@ class ShiftedHats:
         return np.asarray(np.fft.irfft(spectrum, size)[:, :count])
 
 
-def _difference(
-    one: NDArray[np.float64], other: NDArray[np.float64] | float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _difference(one: Array, other: Array | float) -> tuple[Array, Array]:
     """one - other, rounded, and what rounding has lost of it."""
     rounded = np.asarray(one - other)
     back = rounded - one

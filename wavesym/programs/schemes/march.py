@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.schemes.march_joints import MarchNumbers
 
 
@@ -14,35 +15,25 @@ class WindowBlock:
     """
 
     def __init__(
-        self,
-        scheme: MarchNumbers,
-        first: int,
-        waves: NDArray[np.float64],
-        starts: NDArray[np.float64],
-        acting: NDArray[np.float64],
-        totals: NDArray[np.float64],
+        self, scheme: MarchNumbers, first: int, waves: Array, starts: Array, acting: Array, totals: Array
     ) -> None:
         self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
-        self._integrals: dict[int, list[NDArray[np.float64]]] = {}
-        self._limits: dict[tuple[int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+        self._integrals: dict[int, list[Array]] = {}
+        self._limits: dict[tuple[int, int], tuple[Array, Array]] = {}
         n = np.arange(self.count)
         for output in range(scheme.outputs):
             if np.any(scheme.summed[self._output_terms(output)]):
                 self.totals[output, 1:] += np.cumsum(self._integral_values(output, n, n, None), dtype=scheme.real)
 
-    def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def read(self, tau: Array) -> Array:
         """All outputs at some tau in these windows."""
         return self.read_places(*self._scheme.places(tau))
 
     def read_places(
-        self,
-        window: NDArray[np.int_],
-        phase: NDArray[np.int_],
-        t: NDArray[np.float64],
-        outputs: range | None = None,
-    ) -> NDArray[np.float64]:
+        self, window: NDArray[np.int_], phase: NDArray[np.int_], t: Array, outputs: range | None = None
+    ) -> Array:
         """The same where `places` are known; all outputs, or some."""
         scheme = self._scheme
         n = window - self.first
@@ -65,9 +56,7 @@ class WindowBlock:
         heard = zip(scheme.track[here], scheme.gain[here], scheme.delay[here], scheme.summed[here], strict=True)
         return [(track, gain, delay) for track, gain, delay, integral in heard if integral == summed]
 
-    def _direct_values(
-        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _direct_values(self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: Array) -> Array:
         """What an output hears at t, on windows n, which are at `phase` in their cycle."""
         scheme = self._scheme
         total = np.zeros(t.shape, scheme.real)
@@ -81,7 +70,7 @@ class WindowBlock:
             total += gain * _series(np.ascontiguousarray(c), u)
         return total
 
-    def _integral(self, track: int) -> list[NDArray[np.float64]]:
+    def _integral(self, track: int) -> list[Array]:
         """Of a track, on each panel, the antiderivatives on all windows, (k, windows)."""
         if track not in self._integrals:
             until = self._scheme.deepest + self.count
@@ -90,7 +79,7 @@ class WindowBlock:
             ]
         return self._integrals[track]
 
-    def _ends(self, track: int, stretch: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _ends(self, track: int, stretch: int) -> tuple[Array, Array]:
         """The antiderivatives where a stretch begins and where it ends, on all windows."""
         scheme = self._scheme
         if (track, stretch) not in self._limits:
@@ -103,9 +92,7 @@ class WindowBlock:
             self._limits[track, stretch] = low, high
         return self._limits[track, stretch]
 
-    def _integral_values(
-        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
-    ) -> NDArray[np.float64]:
+    def _integral_values(self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: Array | None) -> Array:
         """The integral from the start of windows n to t; without t over all of them."""
         scheme = self._scheme
         total = np.zeros(n.shape, scheme.real)
@@ -162,12 +149,12 @@ class Marching:
 class RunningLoads:
     """The loads, polynomials in the time since their last change."""
 
-    def __init__(self, scheme: MarchNumbers, powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
+    def __init__(self, scheme: MarchNumbers, powers: Array, since: Array) -> None:
         self._scheme, self._powers, self._since = scheme, powers, since
-        self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
+        self._now: dict[int, tuple[int, int, Array]] = {}
         self._event = 0
 
-    def on_window(self, window: int) -> NDArray[np.float64]:
+    def on_window(self, window: int) -> Array:
         """What acts on each point on the panels of a window, (panels, points, 3); windows come in order."""
         scheme = self._scheme
         # one more, for points on which nothing acts
@@ -202,7 +189,7 @@ class MarchScheme(MarchNumbers):
     SAMPLES = 4096
     """So many samples at once."""
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         out = np.empty((self.outputs, tau.size), self.real)
         windows = self.places(tau)[0]
         marching, count = Marching(self), int(windows[-1]) + 1
@@ -215,7 +202,7 @@ class MarchScheme(MarchNumbers):
         return out
 
 
-def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _series(c: Array, u: Array) -> Array:
     """sum of c[k] T_k(u)"""
     twice = u + u
     now, after = np.zeros_like(u), np.zeros_like(u)
@@ -224,7 +211,7 @@ def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float6
     return np.asarray((u * now - after) + c[0])
 
 
-def _antiderivative(c: NDArray[np.float64]) -> NDArray[np.float64]:
+def _antiderivative(c: Array) -> Array:
     """Of a series, times 1 / half the length of the panel."""
     result = np.zeros((len(c) + 1, c.shape[1]), c.dtype)
     result[1:] = c

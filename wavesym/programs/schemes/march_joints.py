@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.schemes.scheme import Scheme
 
 
@@ -25,7 +26,7 @@ class MarchNumbers(Scheme):
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real
 
-        def reals(name: str, *shape: int) -> NDArray[np.float64]:
+        def reals(name: str, *shape: int) -> Array:
             return np.array(tables[name], real).reshape(shape or -1)
 
         def indices(name: str, *shape: int) -> NDArray[np.int_]:
@@ -67,7 +68,7 @@ class MarchNumbers(Scheme):
             for kind in np.unique(kinds, axis=0)
         ]
 
-    def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+    def places(self, tau: Array) -> tuple[NDArray[np.int_], NDArray[np.int_], Array]:
         """Of each tau its window, the place of that in a cycle, and the time since the cycle began."""
         cycle = np.floor(tau / self.span)
         cycle -= cycle * self.span > tau
@@ -91,7 +92,7 @@ class JointGroup:
             places = np.arange(np.max(counts))
             return np.where(places < counts[:, None], firsts[joints, None] + places, -1)
 
-        def of_ports(name: str) -> NDArray[np.float64]:
+        def of_ports(name: str) -> Array:
             return np.append(scheme.joint_numbers[name], 0).astype(scheme.real)[self.ports]
 
         self.joints = joints
@@ -107,12 +108,12 @@ class JointGroup:
         self.drive = scheme.joint_numbers["drive"][joints, None]
         self._answers, self._matrix = scheme.answers[:, joints], scheme.joint_numbers["matrix"]
 
-    def matrices(self, width: int, height: int) -> NDArray[np.float64]:
+    def matrices(self, width: int, height: int) -> Array:
         """Those of each panel and joint, turned: (panels, joints, width, height)."""
         places = self._answers[..., None] + np.arange(width * height)
         return np.asarray(self._matrix[places].reshape(*self._answers.shape, width, height))
 
-    def arriving_waves(self, waves: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    def arriving_waves(self, waves: Array, n: int) -> Array:
         """What arrives on window n, on which nothing of it is sent: (panels, joints, ports, k)."""
         return np.asarray(waves[n - self.back, self.arrive, self.panels])
 
@@ -128,13 +129,7 @@ class Scatterers(JointGroup):
             np.swapaxes(part, 2, 3).copy() for part in (self.columns[:, :, :ports], self.columns[:, :, ports:])
         )
 
-    def step(
-        self,
-        a: NDArray[np.float64],
-        load: NDArray[np.float64],
-        x: NDArray[np.float64],
-        starts: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def step(self, a: Array, load: Array, x: Array, starts: Array) -> Array:
         """As JointGroup has it."""
         out = self.waves @ a
         out[..., :3] += self.loads @ load
@@ -162,13 +157,7 @@ class Bodies(JointGroup):
             longer[np.abs(longer) < 2.0**-100] = 0
             stride, down, up = 2 * stride, longer, longer_up
 
-    def step(
-        self,
-        a: NDArray[np.float64],
-        load: NDArray[np.float64],
-        x: NDArray[np.float64],
-        starts: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def step(self, a: Array, load: Array, x: Array, starts: Array) -> Array:
         """As JointGroup has it."""
         p = (self.push[:, None, :] @ a)[:, :, 0]
         p[..., :3] += self.drive * load[:, :, 0]
@@ -203,13 +192,7 @@ class Blocks(JointGroup):
         self._answers = self._answers[:, :1]
         self.columns = self.matrices(width, width)[:, 0]
 
-    def step(
-        self,
-        a: NDArray[np.float64],
-        load: NDArray[np.float64],
-        x: NDArray[np.float64],
-        starts: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def step(self, a: Array, load: Array, x: Array, starts: Array) -> Array:
         """As JointGroup has it."""
         s = self.collect @ a
         s[..., :3] += load
@@ -222,7 +205,7 @@ class Blocks(JointGroup):
         return np.asarray(self.spread @ s - a)
 
 
-def _total(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _total(values: Array) -> Array:
     """Sums along the last axis, in pairs."""
     while values.shape[-1] > 1:
         half = values.shape[-1] // 2

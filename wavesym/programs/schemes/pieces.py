@@ -1,8 +1,8 @@
 """Pieces in NumPy."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.schemes.scheme import Scheme
 
 
@@ -31,19 +31,13 @@ class PiecesScheme(Scheme):
                 rows[: len(of_piece)] = of_piece[::-1]
             self._grids.append((members, start[low + g : high + g + 1], centre[low:high], powers))
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         out = np.empty((self.outputs, tau.size), self.real)
         for outputs, starts, centres, powers in self._grids:
             out[outputs] = self._on_pieces(tau, starts, centres, powers)
         return out
 
-    def _on_pieces(
-        self,
-        tau: NDArray[np.float64],
-        starts: NDArray[np.float64],
-        centres: NDArray[np.float64],
-        powers: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def _on_pieces(self, tau: Array, starts: Array, centres: Array, powers: Array) -> Array:
         """Outputs at sorted tau inside the grid: (outputs, tau.size). All samples of a piece are one matrix product.
 
         Where samples lie unevenly, pieces that have about as many, from half to all of a power of 2, go together.
@@ -65,7 +59,7 @@ class PiecesScheme(Scheme):
             out[:, places[there]] = values[there].T
         return out
 
-    def _product(self, w: NDArray[np.float64], powers: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _product(self, w: Array, powers: Array) -> Array:
         """The polynomials `powers` (pieces, degree + 1, outputs) at w (pieces, samples): (pieces, samples, outputs)."""
         size = powers.shape[1]
         basis = np.empty((*w.shape, size - 1), self.real)

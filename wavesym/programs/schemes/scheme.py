@@ -1,7 +1,9 @@
 """What all programs in NumPy have in common: numbers go in, and outputs at any tau come out."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from wavesym.numbers.arrays import Array
 
 
 class Scheme:
@@ -13,11 +15,7 @@ class Scheme:
     outputs: int
 
     def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
+        self, tables: dict[str, tuple[float, ...]], constants: dict[str, float], tau_max: float, real: type[np.float64]
     ) -> None:
         self.tau_max, self.real = tau_max, real
         self._read(tables, constants)
@@ -25,10 +23,10 @@ class Scheme:
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         raise NotImplementedError
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         raise NotImplementedError
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+    def evaluate(self, tau: ArrayLike) -> Array:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
         taus = np.asarray(tau, dtype=self.real)
         flat = taus.ravel()
