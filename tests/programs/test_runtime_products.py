@@ -56,7 +56,9 @@ def lost(given, derived):
 
 def accepted(given, derived):
     """Whether what is multiplied on the way is a number with all its digits."""
-    sizes = np.abs(in_c(product_lines(LAWS, LAWS.every_slope if derived else LAWS.every, DOUBLE), given))
+    sizes = np.abs(
+        in_c(product_lines(LAWS, [slope for *_, slope in LAWS.slopes] if derived else LAWS.every, DOUBLE), given)
+    )
     return bool(np.all((sizes >= np.finfo(np.float64).tiny) & np.isfinite(sizes)))
 
 

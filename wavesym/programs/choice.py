@@ -157,8 +157,8 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form, one.model or model) for one in tried if one.form and not one.refusal]
     # where modes are for something else altogether that is no news, but of a record that nothing serves
-    silent = found or not model.spacing
-    refused = [one for one in tried if one.refusal and not (silent and one.kind == "modes" and _is_unserved(one))]
+    unserved = () if model.spacing and not found else UnservedError
+    refused = [one for one in tried if one.refusal and not (one.kind == "modes" and isinstance(one.error, unserved))]
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
@@ -180,10 +180,6 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     loses = "is larger" if small else "takes longer"
     dearer = [f"{form.summary}, {loses}" for _, form, _ in found if form is not chosen]
     return Choice(name, chosen, "; ".join([*(one.why for one in refused), *dearer, chosen.summary]), its_model)
-
-
-def _is_unserved(one: Attempt) -> bool:
-    return isinstance(one.error, UnservedError)
 
 
 def _make_closed(model: Model, real: Real, asked: bool, *_: object) -> Form:

@@ -26,7 +26,6 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
-from wavesym.derivation.increments import Increment
 from wavesym.exact.tables.ball import largest, segments, shift
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
@@ -153,22 +152,21 @@ def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) 
 
 
 def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
-    pulses = tuple(_pulse(arrival.time, arrival.increment, real) for arrival in signal.arrivals)
+    pulses = []
+    for arrival in signal.arrivals:
+        start, increment = real.not_below(arrival.time), arrival.increment
+        powers = {rate: tuple(map(real.nearest, increment[rate])) for rate in sorted(increment)}
+        families = tuple(PulseFamily(real.nearest(rate), of) for rate, of in powers.items())
+        pulses.append(Pulse(start, real.nearest(rational(start) - arrival.time), families))
     if not pulses:
-        return ClosedOutput(signal.name, 0.0, 0.0, pulses, ())
+        return ClosedOutput(signal.name, 0.0, 0.0, (), ())
     size = largest(partial(segments, signal), tau_max)
     errors = [
         bound(error / size) if error is not None else math.inf
         for error in _segment_errors(signal, rational(tau_max), real)
     ]
     reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
-    return ClosedOutput(signal.name, reached[-1], float(size), pulses, reached)
-
-
-def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
-    start = real.not_below(time)
-    families = (PulseFamily(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
-    return Pulse(start, real.nearest(rational(start) - time), tuple(families))
+    return ClosedOutput(signal.name, reached[-1], float(size), tuple(pulses), reached)
 
 
 def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:

@@ -28,19 +28,15 @@ def reference_values(model: Model, real: Real, check_points: Sequence[float]) ->
     """
     reference = Reference(beginning(model), real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(model.probes)))
-    taus = _thin_out([tau for tau in check_points if tau <= reference.tau_max], most)
+    taus = [tau for tau in check_points if tau <= reference.tau_max]
+    if (step := -(-len(taus) // most)) > 1:  # no more than a self-test should carry, spread evenly
+        taus = [*taus[::step], taus[-1]]
     return ReferenceValues(tuple(taus), tuple(map(tuple, reference.values(taus))))
 
 
 def leap(k: int, j: int) -> fmpq:
     """Numbers from -1 to 1 that differ much from one sample k to the next, and from load j to load."""
     return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
-
-
-def _thin_out(points: Sequence[float], most: int) -> Sequence[float]:
-    """No more points than a self-test should carry, spread evenly over those there are."""
-    step = -(-len(points) // most)
-    return [*points[::step], points[-1]] if step > 1 else points
 
 
 class Form(BoundedOutputs, ABC):

@@ -61,7 +61,11 @@ class Pieces(Form):
     @cached_property
     def bytes(self) -> int:
         """The size of the tables in C."""
-        return _OFFSETS * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
+        numbers, indices = _OFFSETS, 0
+        for grid in self.grids:
+            numbers += len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
+            indices += len(grid.first) + len(grid.powers) + 1
+        return numbers * self.real.bytes + indices * 4
 
     @cached_property
     def work(self) -> float:
@@ -135,9 +139,3 @@ class Pieces(Form):
             "steps": max(grid.steps for grid in self.grids),
             "exact": self.real.nearest(1 / self.real.roundoff),
         }
-
-
-def _bytes(grid: PieceGrid, real: Real) -> int:
-    numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
-    indices = len(grid.first) + len(grid.powers) + 1
-    return numbers * real.bytes + indices * 4

@@ -68,11 +68,6 @@ class RuntimeLaws:
         return tuple(one for functions in self.functions.values() for one in functions if isinstance(one, Ratio))
 
     @property
-    def every_slope(self) -> tuple[Ratio, ...]:
-        """All derivatives."""
-        return tuple(slope for *_, slope in self.slopes)
-
-    @property
     def positive(self) -> frozenset[str]:
         """The symbols of numbers that have to be."""
         return frozenset(label for field in self.fields if field.positive for label in field.labels)

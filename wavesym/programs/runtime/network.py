@@ -100,7 +100,7 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     ring = Ring(tuple(sizes))
     free, some = (
         {label: values[label] / size for label, size in sizes.items()}
-        for values in (ring.symbols(), draw_numbers(fields))
+        for values in (ring.symbols(), {label: drawn_number(label) for field in fields for label in field.labels})
     )
     return FreeNetwork(
         fields,
@@ -162,11 +162,6 @@ def unit_of_load(model: Model, load: AppliedLoad) -> ParameterUnit:
     return ParameterUnit(size / model.clock.per_tau, f"{text}/{model.clock.unit}")
 
 
-def draw_numbers(fields: Sequence[RuntimeField]) -> Mapping[str, fmpq]:
-    """A number for each parameter: what is 0 with them is 0 with all of them, but for a chance of one in 2**60."""
-    return {label: drawn_number(label) for field in fields for label in field.labels}
-
-
 def drawn_number(label: str) -> fmpq:
-    """A positive number that depends on a label alone."""
+    """A positive number that depends on a label alone: what is 0 with it is 0 with all, but for a chance of 2**-60."""
     return fmpq(int(sha256(label.encode()).hexdigest()[:16], 16) + 1, 1 << 62)

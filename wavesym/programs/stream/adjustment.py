@@ -52,7 +52,7 @@ def enough_adjustment(model: Model, spacing: fmpq) -> fmpq | None:
 def _fit_bars(model: Model, spacing: fmpq, most: fmpq) -> tuple[Bar, ...] | None:
     """The rods whose speeds change by so much at most, with fewer panels; None where those are few, or stay as many."""
     before = _panels_of_step(model.network.bars, spacing)
-    if before is not None and _is_few(spacing, before):
+    if before is not None and (before <= _FEW or before * SHORTEST <= spacing):
         return None
     bars = _nearest(model.network_as_written.bars, spacing, most)
     if bars is None:
@@ -91,10 +91,6 @@ def _panels_of_step(bars: tuple[Bar, ...], spacing: fmpq) -> fmpq | None:
     window = common_measure([bar.delay for bar in bars])
     count = panels_in_common(window, spacing)
     return None if count is None else spacing / window * count
-
-
-def _is_few(spacing: fmpq, panels: fmpq) -> bool:
-    return panels <= _FEW or panels * SHORTEST <= spacing
 
 
 def _with_bars(model: Model, bars: tuple[Bar, ...], spacing: fmpq) -> Model:

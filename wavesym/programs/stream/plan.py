@@ -12,7 +12,7 @@ Instants inside of panels at which loads change, the same ones in every window, 
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,7 +25,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, march_plan, unit_action
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan, Panel, march_plan, unit_action
 from wavesym.programs.program import Input
 
 LONGEST = fmpq(1, 8)
@@ -74,7 +74,7 @@ class StreamPlan:
     @property
     def loaded(self) -> tuple[int, ...]:
         """The joints on which something acts, by number."""
-        return _loaded_joints(self.march.joints)
+        return tuple(n for n, joint in enumerate(self.march.joints) if any(force >= 0 for force in joint.forces))
 
     @property
     def direct(self) -> tuple[tuple[int, ...], ...]:
@@ -87,14 +87,13 @@ class StreamPlan:
                     port.ratio * sum((joint.space.feedthrough[port.point, k] * gain for k, gain in gains), _ZERO)
                     for gains in self._gains(joint)
                 )
-        return tuple(
-            tuple(
-                j
-                for j in range(len(self.inputs))
-                if sum((one.gain * passing[one.track][j] for one in output.terms if _acts_at_once(one, passing)), _ZERO)
-                != 0
-            )
+        at_once = (
+            [one for one in output.terms if one.track in passing and one.delay == 0 and not one.summed]
             for output in self.march.outputs
+        )
+        return tuple(
+            tuple(j for j in range(len(self.inputs)) if sum((one.gain * passing[one.track][j] for one in terms), _ZERO))
+            for terms in at_once
         )
 
     def _gains(self, joint: MarchedJoint) -> Iterator[list[tuple[int, fmpq]]]:
@@ -190,14 +189,6 @@ def acting_inputs(
             for response, given in zip(responses, inputs, strict=True)
         )
         yield InputForce(point.velocity if point.motion is not None else _ZERO, tuple(gains), summed)
-
-
-def _acts_at_once(one: OutputTerm, passing: Container[int]) -> bool:
-    return one.track in passing and one.delay == 0 and not one.summed
-
-
-def _loaded_joints(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
-    return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 
 def panels_in_common(window: fmpq, spacing: fmpq) -> int | None:

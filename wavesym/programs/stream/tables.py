@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cached_property
 from math import sqrt
 
@@ -241,18 +241,16 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
     ]
     if carried := max(at_hand, default=0.0):
         return carried, 0.0
-    moved = 1.4143 * sum(_motion_tables(joint, point))
+    shown = [
+        abs(nearest(space.state_velocities[point, a])) / sqrt(nearest(weight)) for a, weight in enumerate(space.weights)
+    ]
+    moved = 1.4143 * sum(shown)
     passing = sum(
         abs(nearest(space.feedthrough[point, port.point] * port.push)) / root
         for port, root in zip(space.ports, roots, strict=True)
         if root
     )
     return 1 / (passing + (moved or 1.0)), moved
-
-
-def _motion_tables(joint: MarchedJoint, point: int) -> Iterator[float]:
-    for a, weight in enumerate(joint.space.weights):
-        yield abs(nearest(joint.space.state_velocities[point, a])) / sqrt(nearest(weight))
 
 
 def slip_size(space: JointSpace, degree: int) -> int:

@@ -139,7 +139,7 @@ def _source(scene: Description, program: Program, fields: Sequence[CRuntimeField
         fields=fields,
         products=product_lines(laws, laws.every, real),
         laws=(*assignments(laws, needed, real), ("load", "amplitude" if own else "p->load")),
-        slope_products=product_lines(laws, laws.every_slope, real) if derived else (),
+        slope_products=product_lines(laws, (slope for *_, slope in laws.slopes), real) if derived else (),
         slopes=tuple(slopes(laws, needed, real)) if derived else (),
         tables=program_tables("runtime/tables.h", scene, known, constants),
         largest=largest,
