@@ -14,7 +14,7 @@ from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.c.tables import Declaration, declarations, tables_text
+from wavesym.targets.c.tables import declarations, tables_text
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
@@ -55,13 +55,8 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
 )
 def test_tables_are_what_their_header_declares(kernel, name):
     """No table more, none less, in its order, each of its type."""
-    items = [
-        item
-        for paragraph in declarations(f"{kernel}/tables.h")
-        for item in paragraph
-        if isinstance(item, Declaration) and item.is_table
-    ]
-    types = {item.name: item.type for item in items}
+    items = [item for paragraph in declarations(f"{kernel}/tables.h") for item in paragraph if item["table"]]
+    types = {item["name"]: item["type"] for item in items}
     model = lower(Scene.from_toml(name))
     made = program(model, choose(model, kernel).evaluator).tables
     assert len(items) == len(types) > 0

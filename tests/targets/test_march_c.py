@@ -29,7 +29,7 @@ from wavesym.running.compilation import FLAGS, compile_files, import_text
 from wavesym.running.toolchain import at_hand, compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets import files as written
-from wavesym.targets.c.tables import Declaration, declarations
+from wavesym.targets.c.tables import declarations
 from wavesym.targets.manifest import CODE_AT_MOST
 
 BUILDS = {"plain": ("-std=c99", "-O0"), "contracted": (*FLAGS, "-march=native", "-ffp-contract=fast")}
@@ -232,7 +232,7 @@ def test_tables_are_declared_as_they_are_written() -> None:
     made = chain("double").made["every.c"]
     known = set(re.findall(r"^static const (int|real) (\w+)\[\]", made, re.MULTILINE))
     items = (item for paragraph in declarations("march/tables.h") for item in paragraph)
-    assert known == {(item.type, item.name) for item in items if isinstance(item, Declaration) and item.is_table}
+    assert known == {(item["type"], item["name"]) for item in items if item["table"]}
     assert not re.search(r"\b(name|NAME)_|tables\.h", made)
 
 

@@ -48,10 +48,10 @@ def _comments(kernel: str, names: Sequence[str]) -> dict[str, list[str]]:
     """What is said of tables where C declares them, with the first that a comment is of."""
     found, comment = dict[str, list[str]](), ""
     for item in (item for paragraph in declarations(f"{_HEADERS.get(kernel, kernel)}/tables.h") for item in paragraph):
-        if isinstance(item, str):
-            comment = " ".join(line.strip("/* ") for line in item.splitlines()) if item.startswith("/*") else ""
-        elif item.name in names:
-            found[item.name], comment = wrap(comment, _WIDTH), ""
+        if item["comment"] or item["enum"]:
+            comment = " ".join(line.strip("/* ") for line in (item["comment"] or "").splitlines())
+        elif item["name"] in names:
+            found[item["name"]], comment = wrap(comment, _WIDTH), ""
     return found
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from wavesym.programs.program import Program
 from wavesym.rendering import text_of
@@ -18,38 +17,23 @@ from wavesym.targets.c.kernel import with_names
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_tables
 
-_DECLARATION = re.compile(r"extern const (int|real) (\w+)(\[\])?;")
-_ENUM = re.compile(r"enum \{[^}]*\};")
-_NUMBER = re.compile(r"\b([A-Z][A-Z_]*) = -?\d+\b")
+_ITEM = re.compile(
+    r"(?P<comment>/\*.*?\*/)"
+    r"|(?P<enum>enum \{(?:(?!\bNAME_\w+ =)[^}])*\};)"  # those of names that begin with the scene's are in its header
+    r"|extern const (?P<type>int|real) (?P<name>\w+)(?P<table>\[\])?;"
+    r"|(?P<other>\S[^\n]*)",
+    re.DOTALL,
+)
+_NUMBER = re.compile(r"\b([A-Z][A-Z_]*) = (-?\d+)\b")
 
 
-class Declaration(NamedTuple):
-    """A table, or a single number."""
-
-    type: str
-    name: str
-    is_table: bool
-
-
-def declarations(file: str) -> Iterator[list[str | Declaration]]:
-    """The paragraphs of templates/c/`file` that a program has: comments and enumerations are their text."""
+def declarations(file: str) -> Iterator[list[re.Match[str]]]:
+    """The paragraphs of templates/c/`file` that a program has: comments, enumerations, tables and single numbers."""
     ports = text_of("c/ports.h").partition("\n\n")[2]
-    for paragraph in text_of(f"c/{file}").replace('#include "../ports.h"\n', ports).rstrip().split("\n\n"):
-        items: list[str | Declaration] = []
-        for line in paragraph.splitlines():
-            if found := _DECLARATION.fullmatch(line):
-                items.append(Declaration(found[1], found[2], bool(found[3])))
-            elif items and isinstance(items[-1], str) and not items[-1].endswith("*/" if items[-1][0] == "/" else "};"):
-                items[-1] += f"\n{line}"
-            else:
-                items.append(line)
-        # those of an enumeration whose names begin with the scene's are in its header
-        if all(isinstance(item, Declaration) or _is_text(item) for item in items):
+    for paragraph in text_of(f"c/{file}").replace('#include "../ports.h"\n', ports).split("\n\n"):
+        items = [*_ITEM.finditer(paragraph)]
+        if not any(item["other"] for item in items):
             yield items
-
-
-def _is_text(item: str) -> bool:
-    return item.startswith("/*") or bool(_ENUM.fullmatch(item) and not re.search(r"\bNAME_\w+ =", item))
 
 
 def sizes(file: str, program: Program) -> Iterator[tuple[str, str]]:
@@ -66,40 +50,25 @@ def program_tables(file: str, scene: Description, program: Program, constants: M
     return with_names("\n\n".join(text.rstrip() for text in paragraphs if text), scene)
 
 
-def tables_text(
-    file: str,
-    tables: Mapping[str, Lines],
-    constants: Mapping[str, str],
-) -> list[str]:
+def tables_text(file: str, tables: Mapping[str, Lines], constants: Mapping[str, str]) -> list[str]:
     """The same with values, each paragraph as text: what has none is left out, and comments of nothing else."""
     return ["\n".join(_write(items, tables, constants)) for items in declarations(file)]
 
 
-def _write(items: list[str | Declaration], tables: Mapping[str, Lines], constants: Mapping[str, str]) -> Iterator[str]:
+def _write(items: list[re.Match[str]], tables: Mapping[str, Lines], constants: Mapping[str, str]) -> Iterator[str]:
     comment = ""
     for item in items:
-        if isinstance(item, str) and item.startswith("/*"):
-            comment = item
+        if item["comment"]:
+            comment = item["comment"]
             continue
-        text = _NUMBER.sub(lambda of: _enumerate_constant(of, constants), item) if isinstance(item, str) else ""
-        if isinstance(item, Declaration):
-            text = _define_item(item, tables, constants)
+        name, text = item["name"], ""
+        if item["enum"]:
+            text = _NUMBER.sub(lambda of: f"{of[1]} = {constants.get(of[1].lower(), of[2])}", item[0])
+        elif item["table"] and name in tables:
+            rows = (f"    {row}\n" for row in tables[name])
+            text = f"static const {item['type']} {name}[] = {{\n{''.join(rows)}}};\n"
+        elif not item["table"] and name in constants:
+            text = f"static const {item['type']} {name} = {constants[name]};"
         if text:
             yield from filter(None, (comment, text))
             comment = ""
-
-
-def _enumerate_constant(found: re.Match[str], constants: Mapping[str, str]) -> str:
-    value = constants.get(found[1].lower())
-    return found[0] if value is None else f"{found[1]} = {value}"
-
-
-def _define_item(item: Declaration, tables: Mapping[str, Lines], constants: Mapping[str, str]) -> str:
-    """Empty where there is no value."""
-    if item.is_table:
-        rows = tables.get(item.name, ())
-        return "\n".join((f"static const {item.type} {item.name}[] = {{", *(f"    {row}" for row in rows), "};\n")) * (
-            item.name in tables
-        )
-    value = constants.get(item.name)
-    return "" if value is None else f"static const {item.type} {item.name} = {value};"
