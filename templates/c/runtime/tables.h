@@ -1,17 +1,8 @@
 /* tables.h: stands for what runtime.c.j2 writes above the texts of these files, where they are read by themselves. */
 #define TABLES
-#include <stddef.h>
-
-#ifdef SINGLE
-typedef float name_real;
-#else
-typedef double name_real;
-#endif
-
-#define NAME_TAU_MAX ((name_real)8)
+#include "../name.h"
 
 enum {
-    NAME_OUTPUTS = 2,
     NAME_WINDOWS = 9,
     NAME_STRANDS = 4,
     NAME_DEGREE = 40,
@@ -32,15 +23,16 @@ enum {
     NAME_GROUPS = 6
 };
 
-typedef struct {
-    name_real mass[3];
-} name_parameters;
+#include "models.h"
+#include "peaks.h"
+#include "gradients.h"
+#include "batches.h"
+#include "misfits.h"
+#include "bounds.h"
 
-typedef struct name_work name_work;
-typedef struct name_model name_model;
-typedef struct name_tangent name_tangent;
-typedef struct name_batch name_batch;
-typedef struct name_data name_data;
+struct name_parameters {
+    name_real mass[3];
+};
 
 #include "wide.h"
 #define num name_real
@@ -55,26 +47,6 @@ struct name_model {
 #include "tangent.h"
 #include "batch.h"
 #include "data.h"
-
-int name_build(name_model *model, const name_parameters *parameters);
-int name_build_with(name_work *work, name_model *model, const name_parameters *parameters);
-name_real name_error_estimate(const name_model *model);
-int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
-int name_error_bound_with(
-    name_work *work, name_model *model, const name_parameters *parameters, name_real *bound);
-int name_model_peaks(const name_model *model, name_real *out);
-int name_model_eval(const name_model *model, name_real tau, name_real *out);
-int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
-int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
-name_real name_tangent_estimate(const name_tangent *tangent, int lane);
-int name_tangent_sample(
-    const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
-int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets);
-int name_batch_model(const name_batch *batch, int set, name_model *model);
-size_t name_data_size(const name_real *tau, size_t count);
-int name_data_init(
-    name_data *data, name_real *numbers, const name_real *tau, const name_real *values, size_t count);
-void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit);
 
 #include <float.h>
 

@@ -27,6 +27,8 @@ _MODEL, _READ, _LANES = (f"runtime/{name}.c" for name in ("model", "read", "lane
 """Models of one set, and what stands below them: what reads them, and where many march in lanes."""
 _OF_PARTS = {"peaks": "runtime/peaks.c", "gradients": "runtime/tangents.c", "bound": "runtime/bound.c"}
 """What reads models besides."""
+_DECLARED = {"peaks": "peaks", "gradients": "gradients", "batch": "batches", "misfit": "misfits", "bound": "bounds"}
+"""What headers declare besides models."""
 _SETS = {"misfit": "sets.c", "gradients": "sets_tangents.c", "bound": "sets_bounds.c"}
 _MOST_ON_STACK = 1 << 16
 """Bytes of work that `build` puts there: more is kept in the model."""
@@ -80,17 +82,18 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     memory = Memory(scene.name, program.real.bytes, len(program.outputs))
     memory.read(structs(inside=False))
     inside = memory.size(f"{scene.name}_work") > _MOST_ON_STACK
-    declared = structs(inside=inside)
-    memory.read(declared)
+    text = structs(inside=inside)
+    memory.read(text)
     source = _source(scene, program, fields, inside=inside)
     memory.read(source)
+    declared = (name for part, name in _DECLARED.items() if part in program.parts)
     header = render(
         "c/runtime/runtime.h.j2",
         scene=scene,
-        parts=program.parts,
+        declared="\n\n".join(kernel(f"runtime/{name}.h", scene) for name in ("models", *declared)),
         memory=tuple(_struct_sizes(scene, program.parts, memory, inside)),
         stack=tuple(_stack_sizes(scene, program.parts, memory, inside)),
-        structs=declared,
+        structs=text,
     )
     made = {f"{scene.name}.h": header, f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
