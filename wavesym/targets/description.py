@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from wavesym.exact.contacts.events import ContactEnd
-from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -133,7 +131,13 @@ def describe(program: Program) -> Description:
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(
-            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, _describe(probe))
+            NamedOutput(
+                output.name,
+                constant,
+                literal(_not_below(output.bound, DOUBLE)),
+                probe.unit,
+                _with_title(probe.heading, probe.title),
+            )
             for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)
         ),
         output_count=str(len(names)),
@@ -143,7 +147,10 @@ def describe(program: Program) -> Description:
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
         contacts=tuple(_contact(end, real) for end in origin.contacts),
-        events=tuple(_event(event, real) for event in origin.events or ()),
+        events=tuple(
+            NamedEvent(one.x, one.kind, literal(real.nearest(rational(one.double)), real), one.digits, one.subject)
+            for one in origin.events or ()
+        ),
         event_count="" if origin.events is None else str(len(origin.events)),
         seconds=literal(nearest(model.clock.seconds)) if model.clock else "",
         c_seconds=c_literal(real.nearest(model.clock.seconds), real) if model.clock else "",
@@ -170,12 +177,8 @@ def _units(model: Model) -> str:
     return f"Time is tau, of which one is {literal(nearest(model.clock.seconds))} s; outputs have the units below."
 
 
-def _describe(probe: Probe) -> str:
-    """An output as a comment names it."""
-    return _with_title(probe.heading, probe.title)
-
-
 def _with_title(heading: str, title: str) -> str:
+    """An output, or a load, as a comment names it."""
     return f"{heading}: {ascii(title)[1:-1]}" if title else heading
 
 
@@ -210,11 +213,6 @@ def _not_below(value: float, real: Real) -> float:
 def _contact(end: ContactEnd, real: Real) -> NamedContact:
     tau = real.nearest(rational(end.double))
     return NamedContact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
-
-
-def _event(event: ContactEvent, real: Real) -> NamedEvent:
-    tau = literal(real.nearest(rational(event.double)), real)
-    return NamedEvent(event.x, event.kind, tau, event.digits, event.subject)
 
 
 def _model(model: Model) -> list[str]:

@@ -26,6 +26,8 @@ def manifest(description: Description, program: Program) -> str:
     system: dict[str, object] = dict(model.labels.system)
     for parameter, numbers in model.letters.items():
         system[parameter] = {str(index): str(value) for index, value in numbers.items()}
+    clock, size = model.clock, {"target": SMALL_TARGET, "data": program.bytes}
+    events = [{"x": event.x, "kind": event.kind, "tau": event.digits} for event in description.events]
     content = {
         "schema_version": SCHEMA_VERSION,
         "generator": "wavesym",
@@ -40,30 +42,18 @@ def manifest(description: Description, program: Program) -> str:
         "reason": description.reason,
         **({"shortfall": description.shortfall} if description.shortfall else {}),
         "precision": program.real.name,
-        "size": _size(program),
+        # code grows with the laws where parameters come at run time
+        "size": size if program.laws else size | {"code_at_most": CODE_AT_MOST[program.kernel]},
         "tau_max": program.tau_max,
         **({} if program.laws else {"error_bound": program.error_bound}),
-        **_clock(program),
+        **({"seconds_per_tau": str(clock.seconds)} if clock else {}),
         "outputs": [_output(output, program) for output in program.outputs],
         **_stream_entry(program),
         **_runtime(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
-        **_events(description),
+        **({"events": events} if description.event_count else {}),
     }
     return json.dumps(content, indent=2) + "\n"
-
-
-def _size(program: Program) -> dict[str, object]:
-    """Bytes of tables, and of code, which grows with the laws where parameters come at run time."""
-    if program.laws:
-        return {"target": SMALL_TARGET, "data": program.bytes}
-    return {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kernel]}
-
-
-def _clock(program: Program) -> dict[str, object]:
-    """What one tau is, of a scene with units."""
-    clock = program.provenance.model.clock
-    return {"seconds_per_tau": str(clock.seconds)} if clock else {}
 
 
 def _output(output: ProgramOutput, program: Program) -> dict[str, object]:
@@ -93,13 +83,6 @@ def _runtime(program: Program) -> dict[str, object]:
     entries: dict[str, object] = {"runtime": given, **({"runtime_units": units} if units else {})}
     entries["with"] = list(program.parts)
     return entries | {name: program.constants[name] for name in ("degree", "kappa_max") if name in program.constants}
-
-
-def _events(description: Description) -> dict[str, object]:
-    """What contacts do that open and close."""
-    if not description.event_count:
-        return {}
-    return {"events": [{"x": event.x, "kind": event.kind, "tau": event.digits} for event in description.events]}
 
 
 def _stream_entry(program: Program) -> dict[str, object]:

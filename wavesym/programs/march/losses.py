@@ -49,7 +49,7 @@ class Losses:
         for number, group in enumerate(scheme.groups):
             for place, panel in enumerate(plan.panels):
                 if isinstance(group, Blocks):
-                    self._missed[number, place] = made.truncation_errors(first[number], panel.length)
+                    self._missed[number, place] = made.block(first[number], panel.length).truncation_error
                 if isinstance(group, Bodies):
                     self._bodies[number, place] = self._body_losses(plan, made, group, panel)
         delays = nearest(plan.step) * scheme.steps

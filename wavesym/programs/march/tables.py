@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Sequence
 
-import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
@@ -23,33 +20,20 @@ class MarchTables:
     def __init__(self, plan: MarchPlan, degree: int, real: Real) -> None:
         self._plan, self._degree, self._real = plan, degree, real
 
-    @cached_property
-    def responses(self) -> dict[tuple[object, ...], BodyOperator | BlockResponse]:
-        """By laws and length of a panel: of joints that have a state."""
-        found: dict[tuple[object, ...], BodyOperator | BlockResponse] = {}
-        for joint in self._plan.joints:
-            for panel in self._plan.panels:
-                if (law := joint.space.law) != SCATTERER and (key := response_key(joint, panel.length)) not in found:
-                    found[key] = (
-                        body_operator(joint.space.rate * panel.length, self._degree)
-                        if law == BODY
-                        else block_response(joint.space, panel.length, self._degree)
-                    )
-        return found
+        self._bodies: dict[tuple[object, ...], BodyOperator] = {}
+        self._blocks: dict[tuple[object, ...], BlockResponse] = {}
 
     def body(self, joint: MarchedJoint, length: fmpq) -> BodyOperator:
         """The operator of a body on panels of some length."""
-        found = self.responses[response_key(joint, length)]
-        assert isinstance(found, BodyOperator)
-        return found
+        if (key := response_key(joint, length)) not in self._bodies:
+            self._bodies[key] = body_operator(joint.space.rate * length, self._degree)
+        return self._bodies[key]
 
-    def truncation_errors(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
-        """What the polynomials of a block miss; of a joint without state nothing."""
-        if not joint.space.states:
-            return np.zeros((0, 0))
-        found = self.responses[response_key(joint, length)]
-        assert isinstance(found, BlockResponse)
-        return found.truncation_error
+    def block(self, joint: MarchedJoint, length: fmpq) -> BlockResponse:
+        """The response of a block on panels of some length."""
+        if (key := response_key(joint, length)) not in self._blocks:
+            self._blocks[key] = block_response(joint.space, length, self._degree)
+        return self._blocks[key]
 
     def tables(self, nothing: Sequence[bool]) -> Tables:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
@@ -131,18 +115,17 @@ class MarchTables:
                 key = response_key(joint, panel.length)
                 if key not in begins:
                     begins[key] = len(matrix)
-                    matrix += map(self._real.nearest, self._matrix(joint, key))
+                    matrix += map(self._real.nearest, self._matrix(joint, panel.length))
                 where.append(begins[key])
         return tuple(matrix), tuple(where)
 
-    def _matrix(self, joint: MarchedJoint, key: tuple[object, ...]) -> Iterator[fmpq]:
-        match self.responses.get(key):
-            case BodyOperator() as body:
-                yield from map(rational, body.rows)
-            case BlockResponse() as block:
-                yield from map(rational, block.matrix.T.ravel().tolist())
-            case None:
-                yield from joint.space.scattering.transpose().entries()
+    def _matrix(self, joint: MarchedJoint, length: fmpq) -> Iterable[fmpq]:
+        if joint.space.law == BODY:
+            return map(rational, self.body(joint, length).rows)
+        if joint.space.law == BLOCK:
+            return map(rational, self.block(joint, length).matrix.T.ravel().tolist())
+        entries: list[fmpq] = joint.space.scattering.transpose().entries()
+        return entries
 
 
 def plan_constants(plan: MarchPlan, real: Real) -> dict[str, float]:

@@ -195,7 +195,7 @@ class StreamTables:
         rows = (
             np.array([self._march.body(joint, panel).leak * sqrt(nearest(joint.space.weights[0]))])
             if joint.space.law == BODY
-            else self._march.truncation_errors(joint, panel).ravel()
+            else self._march.block(joint, panel).truncation_error.ravel()
         )
         rows = block_loss(turned) * rows
         return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
