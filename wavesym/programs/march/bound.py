@@ -110,9 +110,7 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     truncated, rounded, summed = 0.0, losses.initial_error, 0.0
     largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
     one, bent = np.ones(degree + 1), 2 / plan.shortest * np.arange(degree + 1.0) ** 2
-    marching = Marching(scheme)
-    for first in range(0, plan.windows, marching.most):
-        block = marching.block(first, min(marching.most, plan.windows - first))
+    for block in _march_blocks(scheme, plan.windows):
         lost, inexact = losses.of_block(block)
         truncated += lost
         rounded += inexact
@@ -190,6 +188,12 @@ def _influence(plan: MarchPlan, terms: Iterable[OutputTerm]) -> float:
 def _direct(losses: Losses, terms: Iterable[OutputTerm]) -> float:
     """How wrong the terms of an output may be by themselves."""
     return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in terms)
+
+
+def _march_blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
+    marching = Marching(scheme)
+    for first in range(0, windows, marching.most):
+        yield marching.block(first, min(marching.most, windows - first))
 
 
 def largest_wave(smooth: Tail, plan: MarchPlan, energy: float) -> float:

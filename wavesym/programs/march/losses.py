@@ -134,9 +134,7 @@ class Losses:
         given = _block_matrix(group.collect @ a + loaded, x)
         sizes = _block_matrix(np.abs(group.collect) @ np.abs(a) + largest, np.abs(x))
         turned = self._norms[number] * self._lengths[panel]
-        rows = self._missed[number, panel]
-        eps = np.linalg.norm(np.abs(given @ rows.T) + self._products(rows.T, sizes), axis=-1)
-        missed = np.asarray(np.sum((eps * block_loss(turned)) ** 2, axis=1))
+        missed = self._truncation_losses(self._missed[number, panel], turned, given, sizes)
         wrong, ends = self._response_errors(group, panel, sizes)
         wrong = np.abs(group.spread) @ wrong + 3 * self._unit * (np.abs(sent) + np.abs(a)) + 4 * self._smallest
         return _square(wrong), np.sum(wrong, axis=-1), ends, missed
@@ -170,6 +168,11 @@ class Losses:
         after = sizes[..., -states:] + sizes @ np.abs(columns[:, -states:])
         ends = wrong[..., -states:] + 2 * self._unit * after
         return wrong[..., :-states].reshape(*sizes.shape[:2], -1, group.size), ends
+
+    def _truncation_losses(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
+        """The squares of what is lost by truncation, (windows,)."""
+        eps = np.linalg.norm(np.abs(given @ missed.T) + self._products(missed.T, sizes), axis=-1)
+        return np.asarray(np.sum((eps * block_loss(turned)) ** 2, axis=1))
 
 
 @dataclass(frozen=True)
