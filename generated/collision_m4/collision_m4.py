@@ -24,6 +24,8 @@ output           proved largest error / largest value
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+Array = NDArray[np.float64]
+
 OUTPUTS = (
     "strain@1-",
     "strain@2",
@@ -526,11 +528,7 @@ class Scheme:
     outputs: int
 
     def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
+        self, tables: dict[str, tuple[float, ...]], constants: dict[str, float], tau_max: float, real: type[np.float64]
     ) -> None:
         self.tau_max, self.real = tau_max, real
         self._read(tables, constants)
@@ -538,10 +536,10 @@ class Scheme:
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         raise NotImplementedError
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         raise NotImplementedError
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+    def evaluate(self, tau: ArrayLike) -> Array:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
         taus = np.asarray(tau, dtype=self.real)
         flat = taus.ravel()
@@ -581,19 +579,13 @@ class PiecesScheme(Scheme):
                 rows[: len(of_piece)] = of_piece[::-1]
             self._grids.append((members, start[low + g : high + g + 1], centre[low:high], powers))
 
-    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _values(self, tau: Array) -> Array:
         out = np.empty((self.outputs, tau.size), self.real)
         for outputs, starts, centres, powers in self._grids:
             out[outputs] = self._on_pieces(tau, starts, centres, powers)
         return out
 
-    def _on_pieces(
-        self,
-        tau: NDArray[np.float64],
-        starts: NDArray[np.float64],
-        centres: NDArray[np.float64],
-        powers: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def _on_pieces(self, tau: Array, starts: Array, centres: Array, powers: Array) -> Array:
         """Outputs at sorted tau inside the grid: (outputs, tau.size). All samples of a piece are one matrix product.
 
         Where samples lie unevenly, pieces that have about as many, from half to all of a power of 2, go together.
@@ -615,7 +607,7 @@ class PiecesScheme(Scheme):
             out[:, places[there]] = values[there].T
         return out
 
-    def _product(self, w: NDArray[np.float64], powers: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _product(self, w: Array, powers: Array) -> Array:
         """The polynomials `powers` (pieces, degree + 1, outputs) at w (pieces, samples): (pieces, samples, outputs)."""
         size = powers.shape[1]
         basis = np.empty((*w.shape, size - 1), self.real)
