@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 import wavesym
-from wavesym.exact.modes.harmonic import HarmonicNetwork
+from wavesym.exact.modes.branches import BranchTree
 from wavesym.results.transfer import Transfer
 from wavesym.scene import Scene
 
@@ -147,11 +147,8 @@ def test_what_is_not_decided_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> N
     scene = chain(parts, "n", branches, displacement=["n"])
     monkeypatch.setattr(Transfer, "lowest_terms", lambda self, k: None)
     assert wavesym.frf(scene, [1.0]).possible_poles == ()
-    monkeypatch.setattr(
-        HarmonicNetwork,
-        "twins",
-        lambda self, root: {each.far_point: each.far_point for each in self.branches(root)},
-    )
+    alone = property(lambda self: {each.far_point: each.far_point for each in self.branches})
+    monkeypatch.setattr(BranchTree, "twins", alone)
     response = wavesym.frf(scene, [1.0, 2.0])
     assert response.possible_poles == (1.0,)
     assert "not decided at 1 rad per tau: the load may not excite it" in response.notes

@@ -19,8 +19,9 @@ from math import factorial
 from flint import acb, arb, fmpq
 
 from wavesym.errors import WavesymError, did_you_mean
+from wavesym.exact.modes.branches import BranchTree
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.exact.modes.harmonic import Amplitudes, BallFrequency, HarmonicNetwork, Quantity
+from wavesym.exact.modes.harmonic import Amplitudes, BallFrequency, Quantity
 from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, PolynomialFrequency
 from wavesym.exact.modes.shape import rigid, rigid_mass
 from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
@@ -143,7 +144,7 @@ class Transfer:
         if len(self.load.drives) != 1 or self._rayleigh is not None:
             return None
         ((point, coefficients),) = self.load.drives
-        amplitudes = self._harmonic.driven_amplitudes(point, BallFrequency(w), undivided=True)
+        amplitudes = Amplitudes(self._trees[point], BallFrequency(w), undivided=True)
         motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
         made = []
         for probe in self.model.probes:
@@ -185,7 +186,7 @@ class Transfer:
             return None
         w, total, divisor = PolynomialFrequency(measure), Laurent.constant(0), Laurent.constant(1)
         for point, coefficients in self.load.drives:
-            amplitudes = self._harmonic.driven_amplitudes(point, w, undivided=True)
+            amplitudes = Amplitudes(self._trees[point], w, undivided=True)
             order = ORDERS.get(probe.quantity, 0) - ORDERS.get(network.points[point].motion or "", 0)
             moved = output_amplitude(network, probe, amplitudes) * drive(coefficients, w.rate, order)
             total = total * amplitudes.divisor + moved * divisor
@@ -225,13 +226,14 @@ class Transfer:
         return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
     def _undamped_outputs(self, point: int, w: Quantity) -> list[Quantity]:
-        amplitudes = self._harmonic.driven_amplitudes(point, BallFrequency(w))
+        amplitudes = Amplitudes(self._trees[point], BallFrequency(w))
         return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
 
     @cached_property
-    def _harmonic(self) -> HarmonicNetwork:
+    def _trees(self) -> dict[int, BranchTree]:
+        """The network as it is seen from each point that is driven."""
         self.model.network.refuse_corners()
-        return HarmonicNetwork(self.model.network)
+        return {point: BranchTree(self.model.network, point) for point, _ in self.load.drives}
 
     @cached_property
     def _rayleigh(self) -> tuple[arb, arb, fmpq] | None:

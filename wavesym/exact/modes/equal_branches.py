@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from flint import acb, arb
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.harmonic import Branch, HarmonicNetwork
+from wavesym.exact.modes.branches import Branch, BranchTree
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Quantity, Stiffness
 from wavesym.mechanics.network import Network
@@ -78,8 +78,8 @@ def _first_split(network: Network) -> list[Part]:
         return []
     for root in (n for n, others in beside.items() if len(others) >= _FORK):
         try:
-            harmonic = HarmonicNetwork(network)
-            branches, kinds = harmonic.branches(root), harmonic.kinds(root)
+            tree = BranchTree(network, root)
+            branches, kinds = tree.branches, tree.kinds
         except UnservedError:
             return []
         equal: dict[int, list[Branch]] = {}

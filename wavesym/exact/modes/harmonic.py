@@ -16,35 +16,18 @@ The arithmetic is that of a `Frequency`: balls, power series of them about one f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
 from math import prod
 from typing import Any, NamedTuple, Protocol
 
 from flint import acb, acb_series, arb, fmpq
 
-from wavesym.errors import UnservedError
-from wavesym.mechanics.network import Network, Point
+from wavesym.exact.modes.branches import Branch, BranchTree
+from wavesym.mechanics.network import Point
 
 # balls, complex balls, power series of them, or polynomials
 Quantity = Any
 
 _I, UNKNOWN = acb(0, 1), acb(arb("nan"), arb("nan"))
-
-
-class Branch(NamedTuple):
-    """What leads from one point to the next, outwards: a bar, whose near end is `side`, or None, and what is beside it.
-
-    `ratios` say how far its near and its far end move when their points move by 1.
-    """
-
-    near_point: int
-    far_point: int
-    bar: int | None
-    side: int
-    ratios: tuple[fmpq, fmpq]
-    stiffness: fmpq
-    damping: fmpq
 
 
 class Turn(NamedTuple):
@@ -98,141 +81,12 @@ class _Medium(NamedTuple):
     root: Quantity
 
 
-@dataclass(frozen=True)
-class HarmonicNetwork:
-    """A network in which nothing but one point is driven, with frequency w.
+class Resistances:
+    """What the points and branches of a tree resist by, each with all that is beyond it; `zero` is 0 there."""
 
-    UnservedError, when it is driven, for a ring of parts.
-    """
-
-    network: Network
-    _branches: dict[int, list[Branch]] = field(default_factory=dict, compare=False)
-    _twins: dict[int, dict[int, int]] = field(default_factory=dict, compare=False)
-
-    @cached_property
-    def equals(self) -> list[int]:
-        """Of each bar the first one with its delay."""
-        bars = self.network.bars
-        first: dict[tuple[int, ...], int] = {}
-        keys = ([int(n) for each in (bar.delay, bar.loss) for n in (each.p, each.q)] for bar in bars)
-        return [first.setdefault(tuple(key), number) for number, key in enumerate(keys)]
-
-    def driven_amplitudes(self, root: int, w: Frequency, *, undivided: bool = False) -> Amplitudes:
-        """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
-
-        Args:
-            root: the point.
-            w: the frequency, per tau.
-            undivided: whether amplitudes are those times the `divisor`: of both w is no pole anywhere.
-
-        Returns:
-            Amplitudes; they are not finite where w may be a natural frequency.
-        """
-        return Amplitudes(self, root, w, undivided)
-
-    def branches(self, root: int) -> list[Branch]:
-        """The branches that are reached from a point, each after those nearer to it."""
-        if root not in self._branches:
-            self._branches[root] = self._branches_from(root)
-        return self._branches[root]
-
-    def twins(self, root: int) -> dict[int, int]:
-        """Of each branch that is reached from a point, by its far point, the first one beside it that is its equal."""
-        if root not in self._twins:
-            kinds, first = self.kinds(root), dict[tuple[int, int], int]()
-            for branch in self.branches(root):
-                first.setdefault((branch.near_point, kinds[branch.far_point]), branch.far_point)
-            self._twins[root] = {b.far_point: first[b.near_point, kinds[b.far_point]] for b in self.branches(root)}
-        return self._twins[root]
-
-    def kinds(self, root: int) -> dict[int, int]:
-        """Of each branch that is reached from a point, by its far point, a number that it shares with its equals."""
-        children: dict[int, list[Branch]] = {}
-        for branch in self.branches(root):
-            children.setdefault(branch.near_point, []).append(branch)
-        numbers: dict[tuple[object, ...], int] = {}
-        found: dict[int, int] = {}
-        for branch in reversed(self.branches(root)):
-            beyond = sorted(found[each.far_point] for each in children.get(branch.far_point, ()))
-            found[branch.far_point] = numbers.setdefault((*self._kind(branch), *beyond), len(numbers))
-        return found
-
-    def _kind(self, branch: Branch) -> tuple[object, ...]:
-        """All numbers of a branch and of its far point; balls are equal to nothing but themselves."""
-        point, numbers = self.network.points[branch.far_point], [*branch.ratios, branch.stiffness, branch.damping]
-        if branch.bar is not None:
-            bar = self.network.bars[branch.bar]
-            numbers += [bar.impedance, bar.delay, bar.loss]
-        rests = point.motion is not None
-        numbers += [] if rests else [point.mass, point.stiffness, point.damping]
-        return (branch.bar is None, rests, *(each if isinstance(each, fmpq) else id(each) for each in numbers))
-
-    def _branches_from(self, root: int) -> list[Branch]:
-        beside: dict[int, list[Branch]] = {}
-        for branch in self._every:
-            beside.setdefault(branch.near_point, []).append(branch)
-            back = branch._replace(
-                near_point=branch.far_point,
-                far_point=branch.near_point,
-                side=1 - branch.side,
-                ratios=(branch.ratios[1], branch.ratios[0]),
-            )
-            beside.setdefault(back.near_point, []).append(back)
-        found: list[Branch] = []
-        coming, met = [(root, -1)], {root}
-        for point, before in coming:
-            if point != root and self.network.points[point].motion is not None:
-                continue
-            for branch in beside.get(point, ()):
-                if branch.far_point == before:
-                    continue
-                if branch.far_point in met and self.network.points[branch.far_point].motion is None:
-                    raise UnservedError(
-                        "system.parts: a ring of parts is not supported by modes (write a chain with branches)"
-                    )
-                met.add(branch.far_point)
-                found.append(branch)
-                coming.append((branch.far_point, point))
-        return found
-
-    @property
-    def _every(self) -> list[Branch]:
-        """All of them, from left to right."""
-        network, found = self.network, dict[tuple[int, int], Branch]()
-        for number, bar in enumerate(network.bars):
-            pair = bar.left, bar.right
-            if pair in found or pair[::-1] in found:
-                raise UnservedError(
-                    "system.parts: two rods between the same nodes are not supported by modes (write one)"
-                )
-            found[pair] = Branch(*pair, number, 0, bar.ratios, fmpq(0), fmpq(0))
-        for link in network.links:
-            if link.stiffness == 0 and link.damping == 0:
-                continue
-            pair, ratios = (link.left, link.right), (link.ratio, fmpq(1))
-            if pair[::-1] in found:
-                pair, ratios = pair[::-1], ratios[::-1]
-            branch = found.get(pair, Branch(*pair, None, 0, ratios, fmpq(0), fmpq(0)))
-            scale = ratios[1] / branch.ratios[1]  # a spring counted at the ends of the bar
-            if ratios[0] != scale * branch.ratios[0]:
-                raise UnservedError(
-                    "system.parts: a gear beside a rod is not supported by modes (write a spring or dashpot there)"
-                )
-            found[pair] = branch._replace(
-                stiffness=branch.stiffness + scale**2 * link.stiffness, damping=branch.damping + scale**2 * link.damping
-            )
-        return list(found.values())
-
-
-class Amplitudes:
-    """The complex amplitudes of a network one point of which is driven; whatever no branch leads to is at rest.
-
-    `divisor` is what they are to be divided by where they are `undivided`, else 1; `zero` is 0 in their arithmetic.
-    """
-
-    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Frequency, undivided: bool) -> None:
-        self._network, self._w, self._equals = harmonic.network, w, harmonic.equals
-        self._branches, self._twins = harmonic.branches(root), harmonic.twins(root)
+    def __init__(self, tree: BranchTree, w: Frequency) -> None:
+        self._network, self._root, self._w, self._equals = tree.network, tree.root, w, tree.equal_bars
+        self._branches, self._twins = tree.branches, tree.twins
         self.zero, self._one = w.number(0), w.number(1)
         self._turns: dict[int, Turn] = {}
         # of each point the branches that differ, by their far points, and how many there are of each
@@ -246,11 +100,93 @@ class Amplitudes:
         for branch in reversed(self._branches):
             self._beyond[branch.far_point] = self._sum_subtree(branch.far_point)
             self._resistance[branch.far_point] = self._branch_fraction(branch)
-        self._root = root
+
+    @property
+    def determinant(self) -> Quantity:
+        """That of the dynamic stiffness times all sin(w T)/w: A of the root were no D shared by equal branches."""
+        shared = [far for far, first in self._twins.items() if far != first]
+        whole, _ = self._sum_subtree(self._root)
+        return prod((self._resistance[far][1] for far in shared), start=whole)
+
+    def _sum_subtree(self, number: int) -> tuple[Quantity, Quantity]:
+        """A and B of a point with all that hangs on it."""
+        point = self._network.points[number]
+        if point.motion is not None:
+            return self._one, self.zero
+        own, b = self._own(point), self._product(number)
+        a = self.zero if own is None else own * b
+        for far, count in self._children.get(number, {}).items():
+            a = a + self._resistance[far][0] * self._product(number, but=far) * count
+        return a, b
+
+    def _product(self, number: int, but: int | None = None) -> Quantity:
+        """Of all D of the branches of a point that differ, but for one."""
+        found = [self._resistance[far][1] for far in self._children.get(number, ()) if far != but]
+        return prod(found[1:], start=found[0]) if found else self._one
+
+    def _own(self, point: Point) -> Quantity:
+        """How a point resists by itself; None where it does not."""
+        if point.mass == point.damping == point.stiffness == 0:
+            return None
+        own = self._w.number(point.stiffness)
+        if not _is_zero(point.mass):
+            own = own - self._w.square * point.mass
+        return own if point.damping == 0 else own + self._w.rate * point.damping
+
+    def _branch_fraction(self, branch: Branch) -> tuple[Quantity, Quantity]:
+        """N and D of a branch, seen from its near point."""
+        (a, b), beside = self._at_far_end(branch), self._parallel_resistance(branch)
+        if branch.bar is None:
+            return self._scale_by_gear(branch, a * beside), a + b * beside
+        z, (sine, cosine) = self._medium(branch.bar).impedance, self._whole_turn(branch.bar)
+        across = z * cosine if beside is None else z * cosine + beside * sine
+        held = sine * (-z * z) * self._w.square
+        if beside is not None:
+            held = held + 2 * z * beside * (cosine - 1)
+        return self._scale_by_gear(branch, a * across + b * held), a * sine + b * across
+
+    def _scale_by_gear(self, branch: Branch, resistance: Quantity) -> Quantity:
+        return resistance if branch.ratios[0] == 1 else resistance * branch.ratios[0] ** 2
+
+    def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
+        """A and B of what lies beyond it, seen by its far end."""
+        a, b = self._beyond[branch.far_point]
+        return a, b if branch.ratios[1] == 1 else b * branch.ratios[1] ** 2
+
+    def _parallel_resistance(self, branch: Branch) -> Quantity:
+        """How a spring and a dashpot resist; None where there are none."""
+        if not _is_zero(branch.damping):
+            return self._w.rate * branch.damping + branch.stiffness
+        return None if _is_zero(branch.stiffness) else self._w.number(branch.stiffness)
+
+    def _whole_turn(self, bar: int) -> Turn:
+        first = self._equals[bar]
+        if first not in self._turns:
+            self._turns[first] = self._w.turn(self._medium(first).delay)
+        return self._turns[first]
+
+    def _medium(self, bar: int) -> _Medium:
+        """A bar's impedance and delay, complex where it has a loss."""
+        z, delay, loss = (getattr(self._network.bars[bar], key) for key in ("impedance", "delay", "loss"))
+        if loss == 0:
+            return _Medium(z, delay, 1)
+        root = acb(1, arb(loss)).sqrt()
+        return _Medium(root * z, delay / root, root)
+
+
+class Amplitudes(Resistances):
+    """The complex amplitudes of a network under a unit force on the root of a tree, or, where its motion is prescribed,
+    a unit displacement; whatever no branch leads to is at rest. They are not finite where w may be a natural frequency.
+
+    `divisor` is what they are to be divided by where they are `undivided`, else 1: of both w is no pole anywhere.
+    """
+
+    def __init__(self, tree: BranchTree, w: Frequency, *, undivided: bool = False) -> None:
+        super().__init__(tree, w)
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
         self.divisor: Quantity = self._one
-        self._drive(root, undivided)
+        self._drive(tree.root, undivided)
 
     def point(self, number: int) -> Quantity:
         """How far a point moves."""
@@ -313,46 +249,6 @@ class Amplitudes:
             if self._network.points[branch.far_point].motion is None:
                 self._moved[branch.far_point] = share[branch.far_point] * self._beyond[branch.far_point][1]
 
-    def _sum_subtree(self, number: int) -> tuple[Quantity, Quantity]:
-        """A and B of a point with all that hangs on it."""
-        point = self._network.points[number]
-        if point.motion is not None:
-            return self._one, self.zero
-        own, b = self._own(point), self._product(number)
-        a = self.zero if own is None else own * b
-        for far, count in self._children.get(number, {}).items():
-            a = a + self._resistance[far][0] * self._product(number, but=far) * count
-        return a, b
-
-    def _product(self, number: int, but: int | None = None) -> Quantity:
-        """Of all D of the branches of a point that differ, but for one."""
-        found = [self._resistance[far][1] for far in self._children.get(number, ()) if far != but]
-        return prod(found[1:], start=found[0]) if found else self._one
-
-    def _own(self, point: Point) -> Quantity:
-        """How a point resists by itself; None where it does not."""
-        if point.mass == point.damping == point.stiffness == 0:
-            return None
-        own = self._w.number(point.stiffness)
-        if not _is_zero(point.mass):
-            own = own - self._w.square * point.mass
-        return own if point.damping == 0 else own + self._w.rate * point.damping
-
-    def _branch_fraction(self, branch: Branch) -> tuple[Quantity, Quantity]:
-        """N and D of a branch, seen from its near point."""
-        (a, b), beside = self._at_far_end(branch), self._parallel_resistance(branch)
-        if branch.bar is None:
-            return self._scale_by_gear(branch, a * beside), a + b * beside
-        z, (sine, cosine) = self._medium(branch.bar).impedance, self._whole_turn(branch.bar)
-        across = z * cosine if beside is None else z * cosine + beside * sine
-        held = sine * (-z * z) * self._w.square
-        if beside is not None:
-            held = held + 2 * z * beside * (cosine - 1)
-        return self._scale_by_gear(branch, a * across + b * held), a * sine + b * across
-
-    def _scale_by_gear(self, branch: Branch, resistance: Quantity) -> Quantity:
-        return resistance if branch.ratios[0] == 1 else resistance * branch.ratios[0] ** 2
-
     def _coupling(self, branch: Branch) -> Quantity:
         """What the far end moves by, times D and over B, when the near end does."""
         beside = self._parallel_resistance(branch)
@@ -361,37 +257,12 @@ class Amplitudes:
         z = self._medium(branch.bar).impedance
         return self._one * z if beside is None else z + beside * self._whole_turn(branch.bar).sine
 
-    def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
-        """A and B of what lies beyond it, seen by its far end."""
-        a, b = self._beyond[branch.far_point]
-        return a, b if branch.ratios[1] == 1 else b * branch.ratios[1] ** 2
-
-    def _parallel_resistance(self, branch: Branch) -> Quantity:
-        """How a spring and a dashpot resist; None where there are none."""
-        if not _is_zero(branch.damping):
-            return self._w.rate * branch.damping + branch.stiffness
-        return None if _is_zero(branch.stiffness) else self._w.number(branch.stiffness)
-
     def _turns_to_ends(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
         """From a place of its bar to the near and to the far end."""
         assert branch.bar is not None  # which the place lies on
         delay = self._medium(branch.bar).delay
         part = 1 - place if branch.side else place
         return self._w.turn(delay * part), self._w.turn(delay * (1 - part))
-
-    def _whole_turn(self, bar: int) -> Turn:
-        first = self._equals[bar]
-        if first not in self._turns:
-            self._turns[first] = self._w.turn(self._medium(first).delay)
-        return self._turns[first]
-
-    def _medium(self, bar: int) -> _Medium:
-        """A bar's impedance and delay, complex where it has a loss."""
-        z, delay, loss = (getattr(self._network.bars[bar], key) for key in ("impedance", "delay", "loss"))
-        if loss == 0:
-            return _Medium(z, delay, 1)
-        root = acb(1, arb(loss)).sqrt()
-        return _Medium(root * z, delay / root, root)
 
 
 def _is_zero(number: Quantity) -> bool:

@@ -18,17 +18,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, pi
+from math import inf, pi, prod
 from typing import Any, NamedTuple
 
 import numpy as np
 from flint import acb, acb_series, arb, arb_series, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.modes.harmonic import BallFrequency, Quantity, Turn
+from wavesym.exact.modes.branches import BranchTree
+from wavesym.exact.modes.harmonic import BallFrequency, Frequency, Quantity, Resistances, Turn
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.mechanics.network import Bar, Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.zero_counts import zeros_in_disc
@@ -48,7 +49,6 @@ _AGAIN = 3  # with twice as many bits and half as many terms more
 MOST_ROOTS = 120
 """Of a polynomial whose roots are taken: of twice as many that takes ten seconds."""
 _I = acb(0, 1)
-_ZERO, _ONE = fmpq(0), fmpq(1)
 
 
 def absorb(network: Network) -> Network:
@@ -89,26 +89,18 @@ def bare_ends(network: Network) -> Iterator[BareEnd]:
                 yield BareEnd(number, side, bar.ratios[side] ** 2 * bar.impedance, point.damping)
 
 
-@dataclass
-class _Branch:
-    """What holds a row to its parent: a bar, if there is one, and a spring and a dashpot; how fast their ends move."""
+@dataclass(frozen=True)
+class _Rate:
+    """A frequency by s = i w, in an arithmetic that takes what its `number` makes (harmonic.Frequency)."""
 
-    near_ratio: fmpq = _ONE
-    far_ratio: fmpq = _ONE
-    bar: Bar | None = None
-    stiffness: fmpq = _ZERO
-    damping: fmpq = _ZERO
+    rate: Quantity
+    turn: Callable[[Any], Turn]
+    number: Callable[[Any], Quantity] = arb
 
-
-@dataclass
-class _Row:
-    """A point that is free to move: what it has, bars to what is at rest, each with how fast its end moves."""
-
-    mass: fmpq
-    stiffness: fmpq
-    damping: fmpq
-    resting_bars: list[tuple[Bar, fmpq]] = field(default_factory=list)
-    branch: _Branch = field(default_factory=_Branch)
+    @property
+    def square(self) -> Quantity:
+        """w^2."""
+        return -self.rate * self.rate
 
 
 class Circles:
@@ -124,33 +116,14 @@ class Circles:
     def __init__(self, network: Network) -> None:
         network = absorb(network)
         self._stiffness = stiffness = Stiffness(network)
+        self._count = len(stiffness.points)
         self._series, self._series_bits = list[arb](), 0
         self._left, self.is_exhausted, self.is_finite = _MOST_WORK, False, not network.bars
-        points = (network.points[point] for point in stiffness.points)
-        self._rows = [_Row(point.mass, point.stiffness, point.damping) for point in points]
-        for bar in network.bars:
-            for row, ratio, parent, other in self._ends(bar.left, bar.right, bar.ratios):
-                if parent is None:
-                    self._rows[row].resting_bars.append((bar, ratio))
-                else:
-                    self._rows[row].branch = replace(self._rows[row].branch, bar=bar, near_ratio=other, far_ratio=ratio)
-        for link in network.links:
-            for row, ratio, parent, other in self._ends(link.left, link.right, (link.ratio, _ONE)):
-                here, k, c = self._rows[row], link.stiffness, link.damping
-                if parent is None:
-                    here.stiffness, here.damping = here.stiffness + ratio**2 * k, here.damping + ratio**2 * c
-                else:
-                    branch = here.branch
-                    k, c = branch.stiffness + k, branch.damping + c
-                    here.branch = replace(branch, near_ratio=other, far_ratio=ratio, stiffness=k, damping=c)
-
-    def _ends(self, left: int, right: int, ratios: tuple[fmpq, fmpq]) -> Iterator[tuple[int, fmpq, int | None, fmpq]]:
-        """The row that hangs by a part, or is held to what is at rest; how fast its end moves; its parent; that end."""
-        rows = self._stiffness.rows
-        ends = [(rows.get(left), ratios[0]), (rows.get(right), ratios[1])]
-        for (row, ratio), (parent, other) in (ends, ends[::-1]):
-            if row is not None and (parent is None or self._stiffness.parents[row] == parent):
-                yield row, ratio, parent, other
+        rows = list(zip(stiffness.points, stiffness.parents, strict=True))
+        self._trees = [BranchTree(network, point) for point, parent in rows if parent is None]
+        tied = {end for link in network.links for end in (link.left, link.right)}
+        points = ((number in tied or parent is None, network.points[number]) for number, parent in rows)
+        self._able = sum(is_able or point.mass != 0 or point.stiffness != 0 for is_able, point in points)
 
     def largest_complete(self, found: Sequence[complex], count: int) -> float:
         """Up to which absolute value `found` has all frequencies but 0: beyond its first `count`, if it has those.
@@ -204,14 +177,13 @@ class Circles:
         if not self.is_finite:
             return None
         s = fmpq_poly([0, 1])
-        found: fmpq_poly = self._resistance(-s * s, s, lambda delay: Turn(delay, delay), lambda each: fmpq_poly([each]))
+        found: fmpq_poly = self._determinant(_Rate(s, lambda delay: Turn(delay, delay), lambda each: fmpq_poly([each])))
         return found
 
     def count(self, radius: float) -> int | None:
         """How many frequencies have absolute values below a radius, 0 among them; None where that takes too long."""
         turned = radius * nearest(self._stiffness.delay)
-        bare = sum(row.mass == 0 and row.stiffness == 0 and row.branch.bar is not None for row in self._rows)
-        terms = _TERMS + int(_TERMS_A_RADIAN * turned) + _TERMS_A_ROW * (len(self._rows) - bare)
+        terms = _TERMS + int(_TERMS_A_RADIAN * turned) + _TERMS_A_ROW * self._able
         bits = _BITS + int(_BITS_A_RADIAN * turned)
         if terms > _LONG:
             return self._count_turns(radius)
@@ -228,7 +200,7 @@ class Circles:
 
         They are zeros of the first terms of the power series; however far apart they are, none is searched for.
         """
-        terms = _SLOW_TERMS + _TERMS_A_ROW * len(self._rows)
+        terms = _SLOW_TERMS + _TERMS_A_ROW * self._count
         if terms > MOST_ROOTS or self.is_finite:
             return np.zeros(0, complex)
         with ctx.workprec(_SLOW_BITS):
@@ -260,27 +232,27 @@ class Circles:
             ctx.cap = terms
             with ctx.workprec(bits):
                 s = arb_series([0, 1], prec=terms)
-                found = arb_series(self._resistance(-s * s, s, turn, arb), prec=terms).coeffs()
+                found = arb_series(self._determinant(_Rate(s, turn)), prec=terms).coeffs()
         finally:
             ctx.cap = cap
         return [*found, *[arb(0)] * (terms - len(found))]
 
     def _rest(self, terms: int, radius: arb) -> arb:
         """What terms beyond so many add at most where |s| is a radius."""
-        if self.is_finite and terms > 2 * len(self._rows):
+        if self.is_finite and terms > 2 * self._count:
             return arb(0)
         far = radius + terms / (self._stiffness.delay or 1)
 
         def turn(delay: fmpq) -> Turn:
             return Turn((far * delay).sinh() / far, (far * delay).cosh())
 
-        whole = arb(self._resistance(-far * far, far, turn, arb))
+        whole = arb(self._determinant(_Rate(far, turn)))
         return whole * (radius / far) ** terms / (1 - radius / far)
 
     def _count_turns(self, radius: float) -> int | None:
         """The same by the turns of A: half a turn of the right half of the circle is one."""
         arcs = _ARCS + int(_ARCS_A_RADIAN * radius * nearest(self._stiffness.delay))
-        if _SPARE * arcs * len(self._rows) > self._left:
+        if _SPARE * arcs * self._count > self._left:
             self.is_exhausted = True
             return None
         with ctx.workprec(_BITS):
@@ -299,7 +271,7 @@ class Circles:
                     return None
                 else:
                     coming += [(middle, high), (low, middle)]
-                self._left -= len(self._rows)
+                self._left -= self._count
         return round(total / pi)
 
     def _stays_beside(self, centre: acb, size: arb) -> bool:
@@ -315,43 +287,11 @@ class Circles:
         return bool(others < abs(powers[0]))
 
     def _value(self, w: Quantity) -> Quantity:
-        frequency = BallFrequency(w)
-        return self._resistance(frequency.square, frequency.rate, frequency.turn, arb)
+        return self._determinant(BallFrequency(w))
 
-    def _resistance(
-        self,
-        square: Quantity,
-        rate: Quantity,
-        turn: Callable[[fmpq], Turn],
-        number: Callable[[fmpq], Quantity],
-    ) -> Quantity:
-        """A of all trees, from w^2, i w, and the turns of delays."""
-        delays, _ = self._stiffness.delays
-        turns = dict(zip(map(str, delays), map(turn, delays), strict=True))
-        total = number(fmpq(1))
-        above = [number(r.stiffness) - square * number(r.mass) + rate * number(r.damping) for r in self._rows]
-        below = [total] * len(self._rows)
-        for row, (here, parent) in enumerate(zip(self._rows, self._stiffness.parents, strict=True)):
-            a, b = above[row], below[row]
-            for bar, ratio in here.resting_bars:
-                sine, cosine = turns[str(bar.delay)]
-                a, b = a * sine + b * number(ratio**2 * bar.impedance) * cosine, b * sine
-            if parent is None:
-                total = total * a
-                continue
-            branch = here.branch
-            b, k = b * number(branch.far_ratio**2), number(branch.stiffness) + rate * number(branch.damping)
-            if branch.bar is None:
-                n, d = a * k, a + b * k
-            else:
-                (sine, cosine), z = turns[str(branch.bar.delay)], number(branch.bar.impedance)
-                both, held = z * cosine, -z * z * square * sine
-                if branch.stiffness != 0 or branch.damping != 0:
-                    both, held = both + k * sine, held + 2 * z * k * (cosine - 1)
-                n, d = a * both + b * held, a * sine + b * both
-            above[parent] = above[parent] * d + below[parent] * n * number(branch.near_ratio**2)
-            below[parent] = below[parent] * d
-        return total
+    def _determinant(self, w: Frequency) -> Quantity:
+        """A of all trees."""
+        return prod((Resistances(tree, w).determinant for tree in self._trees), start=w.number(fmpq(1)))
 
 
 def _on_circle(radius: float, part: arb) -> acb:
