@@ -10,39 +10,20 @@ which is summed by Cauchy and Schwarz, as sums of squares over all modes are kno
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
-from flint import acb, acb_series, arb, fmpq
+from flint import acb, arb, fmpq
 
-from wavesym.exact.modes.harmonic import Quantity
+from wavesym.exact.modes.harmonic import Quantity, inverse
 from wavesym.exact.modes.shape import Mode
-from wavesym.exact.modes.statics import Statics
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
-from wavesym.programs.modes.projection import Driver, modal_output, share
+from wavesym.programs.modes.projection import Driver, ExactProjection, modal_output
 from wavesym.programs.modes.undamped_modes import UndampedModes, damping_ratios
-from wavesym.results.transfer import ORDERS, HarmonicLoad, drive
+from wavesym.results.transfer import ORDERS, HarmonicLoad, laplace
 
 _I = acb(0, 1)
-
-
-class ModalDrive(NamedTuple):
-    """What one point is driven by.
-
-    `shares[k][n]` is l f of output k in mode n. `imposed_shape` (None under a force) and `static` are the outputs of
-    the shape that a motion imposes, and under the load when it does not change. Of the modes left out the sum of |l f|
-    over a power of w_n is at most `truncation[k]`, with that `powers[k]`.
-    """
-
-    point: int
-    coefficients: tuple[fmpq, ...]
-    shares: list[list[arb]]
-    imposed_shape: list[arb] | None
-    static: list[arb]
-    truncation: list[arb]
-    powers: list[int]
 
 
 @dataclass(frozen=True)
@@ -69,26 +50,29 @@ class ModalTransfer:
         """
         rate, square = w * _I, w * w
         answers = [
-            _reciprocal(rate * (2 * ratio * n) - square + n * n) - (1 / (n * n) if n != 0 else 0)
+            inverse(rate * (2 * ratio * n) - square + n * n) - (1 / (n * n) if n != 0 else 0)
             for n, ratio in zip(self._frequencies, self._ratios, strict=True)
         ]
-        made: list[Quantity] = [acb(0) for _ in self.model.probes]
-        for each in self._drives:
-            for k, (probe, shares) in enumerate(zip(self.model.probes, each.shares, strict=True)):
-                moved = sum(
-                    (answer * share for share, answer in zip(shares, answers, strict=True)), acb(each.static[k])
-                )
-                order = ORDERS.get(probe.quantity, 0)
-                made[k] = made[k] + self._acting(each, rate, order) * moved
-                if each.imposed_shape is not None:
-                    made[k] = made[k] + self._acting(each, rate, order - 2) * each.imposed_shape[k]
+        made: list[Quantity] = []
+        for probe, products, static, imposed in zip(
+            self.model.probes, self._products, self._projection.static, self._projection.imposed_shape, strict=True
+        ):
+            order, total = ORDERS.get(probe.quantity, 0), acb(0)
+            for drive_number, (point, coefficients) in enumerate(self.load.drives):
+                pairs = zip(products[drive_number], answers, strict=True)
+                moved = sum((answer * part for part, answer in pairs), acb(static[drive_number]))
+                total = total + self._acting(point, coefficients, rate, order) * moved
+                if self.model.network.points[point].motion is not None:
+                    total = total + self._acting(point, coefficients, rate, order - 2) * imposed[drive_number]
+            made.append(total)
         return made
 
     def has_pole(self, k: int, low: arb, high: arb) -> bool:
         """Whether output k is proved to have a pole between two frequencies: one of an undamped mode."""
         for number, (n, ratio) in enumerate(zip(self._frequencies, self._ratios, strict=True)):
             if ratio == 0 and low < n < high:
-                driven = (self._acting(each, n * _I) * each.shares[k][number] for each in self._drives)
+                pairs = zip(self.load.drives, self._products[k], strict=True)
+                driven = (self._acting(*drive, n * _I) * row[number] for drive, row in pairs)
                 if not sum(driven, start=acb(0)).contains(0):
                     return True
         return False
@@ -112,18 +96,20 @@ class ModalTransfer:
         if not last > w:
             return [arb("inf") for _ in made]
         rate = acb(0, w)
-        for each in self._drives:
-            acting = abs(self._acting(each, rate))
-            for k, (left, power) in enumerate(zip(each.truncation, each.powers, strict=True)):
+        (outputs, loads), powers = self._spare, self._projection.powers
+        for drive, load, load_power in zip(self.load.drives, loads, powers[1], strict=True):
+            acting = abs(self._acting(*drive, rate))
+            for k, (output, output_power) in enumerate(zip(outputs, powers[0], strict=True)):
+                left, power = (output * load).sqrt().upper(), output_power + load_power
                 order = ORDERS.get(self.model.probes[k].quantity, 0)
                 most_of_one = last ** (power - 2) * (w * w + 2 * most * last * w) / (last * last - w * w)
                 made[k] += acting * left * most_of_one * w**order
         return made
 
-    def _acting(self, each: ModalDrive, rate: Quantity, order: int = 0) -> Quantity:
+    def _acting(self, point: int, coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Quantity:
         """The force on the point, or its acceleration, differentiated `order` times."""
-        moves = self.model.network.points[each.point].motion == "velocity"
-        return drive(each.coefficients, rate, order + moves)
+        moves = self.model.network.points[point].motion == "velocity"
+        return laplace(coefficients, rate, order + moves)
 
     @cached_property
     def _mode_list(self) -> list[Mode]:
@@ -141,15 +127,9 @@ class ModalTransfer:
         """
         assert self.model.damping is not None  # who has none needs no modes
         damping_ratios(self.model.damping, [midpoint(n) for n in self._frequencies if n != 0])
-        ratios = iter(self.model.damping.ratios)
-        last = ratio = next(ratios)
-        made = []
-        for n in self._frequencies:
-            made.append(arb(0) if n == 0 else arb(ratio))
-            if n != 0:
-                last = ratio
-                ratio = next(ratios, last)
-        return made
+        ratios, strained = self.model.damping.ratios, [n for n in self._frequencies if n != 0]
+        of_strained = [arb(ratios[min(k, len(ratios) - 1)]) for k in range(len(strained))]
+        return [arb(0)] * (len(self._frequencies) - len(strained)) + of_strained
 
     @property
     def _largest_remaining_ratio(self) -> arb:
@@ -160,53 +140,29 @@ class ModalTransfer:
         return arb(max(ratios[min(strained, len(ratios) - 1) :]))
 
     @cached_property
-    def _drives(self) -> list[ModalDrive]:
-        found, cut = self._mode_list, self.modes.spectrum.cut
-        statics = Statics(found[0].stiffness)
-        outputs = [modal_output(self.model.network, cut, probe) for probe in self.model.probes]
-        values = [[output.value(mode) for mode in found] for output in outputs]
-        made = []
-        for point, coefficients in self.load.drives:
-            driver = Driver(point, fmpq(1), "", "")
-            shares = [share(cut.network, driver, mode) for mode in found]
-            if self.model.network.points[point].motion is None:
-                imposed, static, power = None, statics.loaded_shape({point: fmpq(1)}), 1
-                total = static.points[point]
-            else:
-                imposed = statics.imposed_shape(point)
-                static, power, total = statics.lagging_shape(imposed), 0, statics.mass(imposed.points)
-            spare = self._spare(total, shares, power)
-            left_out, powers = [], []
-            for output, row in zip(outputs, values, strict=True):
-                # as a displacement, whatever of it is the output
-                wide = output.power if output.order < 2 else 1
-                whole = output.total(statics) if output.order < 2 else statics.loaded_shape(output.points)
-                whole = whole if isinstance(whole, arb) else arb(output.value(whole))
-                left_out.append((self._spare(whole, row, wide) * spare).sqrt().upper())
-                powers.append(wide + power)
-            made.append(
-                ModalDrive(
-                    point,
-                    coefficients,
-                    [[one * other for one, other in zip(row, shares, strict=True)] for row in values],
-                    None if imposed is None else [output.value(imposed) for output in outputs],
-                    [output.value(static) for output in outputs],
-                    left_out,
-                    powers,
-                )
-            )
-        return made
+    def _projection(self) -> ExactProjection:
+        """Outputs as displacements, whatever of these they are."""
+        found, network, cut = self._mode_list, self.model.network, self.modes.spectrum.cut
+        outputs = [replace(modal_output(network, cut, probe), order=0) for probe in self.model.probes]
+        return ExactProjection(found, outputs, [Driver(point, fmpq(1), "", "") for point, _ in self.load.drives])
 
-    def _spare(self, total: arb, row: list[arb], power: int) -> arb:
-        """What is left of a sum of squares over w^(2 power) once the first modes are taken away: at least 0."""
-        for value, n in zip(row, self._frequencies, strict=True):
-            if n != 0:
-                total = total - value * value / n ** (2 * power)
-        return total.max(arb(0))
+    @cached_property
+    def _products(self) -> list[list[list[arb]]]:
+        """l f of each output, each point that is driven, and each mode."""
+        return [
+            [[one * other for one, other in zip(row, shares, strict=True)] for shares in self._projection.shares]
+            for row in self._projection.values
+        ]
 
-
-def _reciprocal(divisor: Quantity) -> Quantity:
-    """One over it; not a number where it may be 0."""
-    if isinstance(divisor, acb_series) and acb(divisor[0]).contains(0):
-        return acb_series([acb("nan"), 0, 0], prec=3)
-    return 1 / divisor
+    @cached_property
+    def _spare(self) -> tuple[list[arb], list[arb]]:
+        """What is left of sums of squares over w^(2 power) once the first modes are taken away: at least 0."""
+        known = self._projection
+        outputs, loads = (
+            [
+                sum((-x * x / n ** (2 * power) for x, n in zip(row, self._frequencies, strict=True) if n != 0), total)
+                for row, power, total in zip(rows, powers, totals, strict=True)
+            ]
+            for rows, powers, totals in zip((known.values, known.shares), known.powers, known.totals, strict=True)
+        )
+        return [each.max(arb(0)) for each in outputs], [each.max(arb(0)) for each in loads]

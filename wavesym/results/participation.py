@@ -9,7 +9,7 @@ from flint import arb, fmpq
 
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Statics
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import midpoint
 from wavesym.programs.modes.projection import Driver, share
 
@@ -44,7 +44,7 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
             moved = mode.points[number]
             found[name] = Participation(0.0 if moved.contains(0) else midpoint(moved / largest), None)
         elif not mode.frequency.contains(0):
-            taken = -share(mode.stiffness.network, Driver(number, fmpq(1), "", ""), mode)
+            taken = -share(Driver(number, fmpq(1), "", ""), mode)
             statics = Statics(mode.stiffness)
             whole = statics.mass(statics.imposed_shape(number).points)
             found[name] = Participation(midpoint(taken * largest), midpoint(taken * taken / whole))
@@ -72,18 +72,8 @@ def effective_mass(network: Network, mode: Mode) -> float | None:
         return None
     cut = mode.stiffness.network
     force = arb(0)
-    for number, bar in enumerate(cut.bars):
-        for side, at in enumerate((bar.left, bar.right)):
-            if cut.points[at].motion:
-                strain = bar.impedance * mode.slope(End(number, side))
-                force += strain if side else -strain
-    for link in cut.links:
-        for one, other in ((link.left, link.right), (link.right, link.left)):
-            if cut.points[one].motion and not cut.points[other].motion:
-                force -= link.stiffness * mode.points[other]
-    for point, moved in zip(cut.points, mode.points, strict=True):
-        if not point.motion:
-            force -= point.stiffness * moved
+    for number, (point, moved) in enumerate(zip(cut.points, mode.points, strict=True)):
+        force -= mode.pull(number) if point.motion else point.stiffness * moved
     whole = sum((point.mass for point in cut.points if not point.motion), arb(0))
     whole += sum((bar.impedance * bar.delay for bar in cut.bars), arb(0))
     moved = force / mode.frequency**2

@@ -89,7 +89,7 @@ def harmonic_load(model: Model, sources: tuple[str, ...], wanted: str | int | No
     return HarmonicLoad(names[source], unit, drives)
 
 
-def drive(coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Quantity:
+def laplace(coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Quantity:
     """What a load exp(rate tau) does that as a unit step is a sum of powers of tau: by Laplace's transform.
 
     It is differentiated `order` times, or integrated: at rate 0 it is finite where no integral is left of it.
@@ -133,7 +133,7 @@ class Transfer:
                 zip(self.model.probes, self._undifferentiated_outputs(point, w), strict=True)
             ):
                 order = ORDERS.get(probe.quantity, 0) - motion
-                total[k] = total[k] + drive(coefficients, rate, order) * moved
+                total[k] = total[k] + laplace(coefficients, rate, order) * moved
         return total
 
     def parts(self, w: Quantity) -> tuple[list[Quantity], Quantity] | None:
@@ -148,7 +148,7 @@ class Transfer:
         motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
         made = []
         for probe in self.model.probes:
-            driven = drive(coefficients, w * _I, ORDERS.get(probe.quantity, 0) - motion)
+            driven = laplace(coefficients, w * _I, ORDERS.get(probe.quantity, 0) - motion)
             made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
         return made, amplitudes.divisor
 
@@ -188,7 +188,7 @@ class Transfer:
         for point, coefficients in self.load.drives:
             amplitudes = Amplitudes(self._trees[point], w, undivided=True)
             order = ORDERS.get(probe.quantity, 0) - ORDERS.get(network.points[point].motion or "", 0)
-            moved = output_amplitude(network, probe, amplitudes) * drive(coefficients, w.rate, order)
+            moved = output_amplitude(network, probe, amplitudes) * laplace(coefficients, w.rate, order)
             total = total * amplitudes.divisor + moved * divisor
             divisor = divisor * amplitudes.divisor
         return LowestTerms(total, divisor, measure)

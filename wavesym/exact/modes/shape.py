@@ -48,6 +48,22 @@ class Mode:
         slope = self.frequency * (there - here * cosine) / sine
         return -slope if end.side else slope
 
+    def pull(self, point: int) -> Quantity:
+        """What bars and links pull at a point that is at rest."""
+        network, pull = self.stiffness.network, arb(0)
+        for number, bar in enumerate(network.bars):
+            if bar.left == point:
+                pull += self.slope(End(number, 0)) * (bar.impedance * bar.ratios[0])
+            if bar.right == point:
+                pull -= self.slope(End(number, 1)) * (bar.impedance * bar.ratios[1])
+        for link in network.links:
+            if point in (link.left, link.right):
+                moved = self.points[link.right if link.left == point else link.left]
+                pull += moved * (link.ratio * link.stiffness)
+                if link.damping != 0:
+                    pull += moved * (self.frequency * acb(0, link.ratio * link.damping))
+        return pull
+
     def turn(self, delay: fmpq) -> tuple[Quantity, Quantity]:
         """sin and cos of the frequency times a delay."""
         if delay not in self._turns:

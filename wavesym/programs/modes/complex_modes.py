@@ -148,7 +148,7 @@ def project_complex(
     low, losing = LowFrequency(Stiffness(network)), Dissipation(found, dashpots(network))
     loads = [low.driver(driver) for driver in drivers]
     values = [[acb(output.value(mode)) for mode in found] for output in outputs]
-    shares = [[acb(share(network, driver, mode)) for mode in found] for driver in drivers]
+    shares = [[acb(share(driver, mode)) for mode in found] for driver in drivers]
     slow = np.zeros((len(outputs), len(loads), 3))
     beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):

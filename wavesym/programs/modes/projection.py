@@ -8,7 +8,7 @@ from functools import cached_property
 from math import fsum
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq
+from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
@@ -175,36 +175,80 @@ def _spare(w: Array, rows: Array, powers: Array, totals: Array) -> Array:
     return made
 
 
-def project(
-    found: Sequence[Mode], pieces: Cut, outputs: Sequence[ModalOutput], drivers: Sequence[Driver]
-) -> Projection:
-    """Those of the modes of a network that is cut."""
-    network = pieces.network
-    with ctx.workprec(_BITS):
-        statics = Statics(found[0].stiffness)
-        shapes = [static_shapes(statics, driver) for driver in drivers]
-        share_totals = [
-            (static.points[driver.point] if imposed is None else statics.mass(imposed.points)) * driver.gain**2
-            for driver, (imposed, static) in zip(drivers, shapes, strict=True)
+@dataclass(frozen=True)
+class ExactProjection:
+    """The same in balls, of the modes of a network that is cut, with the precision that is set where each is used."""
+
+    modes: Sequence[Mode]
+    outputs: Sequence[ModalOutput]
+    drivers: Sequence[Driver]
+
+    @cached_property
+    def _statics(self) -> Statics:
+        return Statics(self.modes[0].stiffness)
+
+    @cached_property
+    def _shapes(self) -> list[tuple[Shape | None, Shape]]:
+        """What each load imposes, None for a force, and the shape under it when it does not change, but for gains."""
+        made: list[tuple[Shape | None, Shape]] = []
+        for driver in self.drivers:
+            if self._statics.stiffness.network.points[driver.point].motion is None:
+                made.append((None, self._statics.loaded_shape({driver.point: fmpq(1)})))
+            else:
+                imposed = self._statics.imposed_shape(driver.point)
+                made.append((imposed, self._statics.lagging_shape(imposed)))
+        return made
+
+    @cached_property
+    def values(self) -> list[list[arb]]:
+        """What outputs are of modes."""
+        return [[output.value(mode) for mode in self.modes] for output in self.outputs]
+
+    @cached_property
+    def shares(self) -> list[list[arb]]:
+        """Those of modes in loads."""
+        return [[share(driver, mode) for mode in self.modes] for driver in self.drivers]
+
+    @cached_property
+    def imposed_shape(self) -> list[list[arb]]:
+        """What outputs are of the shape that a load imposes."""
+        gains = [driver.gain for driver in self.drivers]
+        pairs = [(imposed, gain) for (imposed, _), gain in zip(self._shapes, gains, strict=True)]
+        return [[arb(0) if s is None else each.value(s) * gain for s, gain in pairs] for each in self.outputs]
+
+    @cached_property
+    def static(self) -> list[list[arb]]:
+        """What outputs are under a load that does not change."""
+        pairs = [(static, driver.gain) for (_, static), driver in zip(self._shapes, self.drivers, strict=True)]
+        return [[each.value(s) * gain for s, gain in pairs] for each in self.outputs]
+
+    @property
+    def powers(self) -> tuple[list[int], list[int]]:
+        """Of outputs and loads."""
+        return [each.power for each in self.outputs], [1 if imposed is None else 0 for imposed, _ in self._shapes]
+
+    @cached_property
+    def totals(self) -> tuple[list[arb], list[arb]]:
+        """The sums of squares over all modes, of outputs and loads."""
+        return [each.total(self._statics) for each in self.outputs], [
+            (static.points[driver.point] if imposed is None else self._statics.mass(imposed.points)) * driver.gain**2
+            for driver, (imposed, static) in zip(self.drivers, self._shapes, strict=True)
         ]
-        gains = [driver.gain for driver in drivers]
-        return Projection(
-            w=np.array([float(mode.frequency) for mode in found]),
-            outputs=np.array([_column(each, found) for each in outputs]).reshape(len(outputs), len(found)),
-            shares=_array([[share(network, each, mode) for mode in found] for each in drivers], len(found)),
-            imposed_shape=_array(
-                [
-                    [arb(0) if s is None else each.value(s) * g for g, (s, _) in zip(gains, shapes, strict=True)]
-                    for each in outputs
-                ],
-                len(drivers),
-            ),
-            static=_array(
-                [[each.value(s) * g for g, (_, s) in zip(gains, shapes, strict=True)] for each in outputs], len(drivers)
-            ),
-            powers=(np.array([each.power for each in outputs]), np.array([1 if s is None else 0 for s, _ in shapes])),
-            totals=(_round_up([each.total(statics) for each in outputs]), _round_up(share_totals)),
-        )
+
+    def rounded(self) -> Projection:
+        """In doubles."""
+        count = len(self.modes)
+        with ctx.workprec(_BITS):
+            powers, totals = self.powers, self.totals
+            return Projection(
+                w=np.array([float(mode.frequency) for mode in self.modes]),
+                outputs=np.array([_column(each, self.modes) for each in self.outputs]).reshape(-1, count),
+                shares=_array(self.shares, count),
+                imposed_shape=_array(self.imposed_shape, len(self.drivers)),
+                static=_array(self.static, len(self.drivers)),
+                powers=(np.array(powers[0]), np.array(powers[1])),
+                totals=(_round_up(totals[0]), _round_up(totals[1])),
+            )
 
 
 def _column(output: ModalOutput, found: Sequence[Mode]) -> list[float]:
@@ -215,32 +259,12 @@ def _column(output: ModalOutput, found: Sequence[Mode]) -> list[float]:
     return [float(output.value(mode)) for mode in found]
 
 
-def static_shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
-    """What a load imposes, and the shape under it when it does not change, both but for its gain."""
-    if statics.stiffness.network.points[driver.point].motion is None:
-        return None, statics.loaded_shape({driver.point: fmpq(1)})
-    imposed = statics.imposed_shape(driver.point)
-    return imposed, statics.lagging_shape(imposed)
-
-
-def share(network: Network, driver: Driver, mode: Mode) -> Quantity:
+def share(driver: Driver, mode: Mode) -> Quantity:
     """The share of a mode of mass 1 in a load."""
-    if network.points[driver.point].motion is None:
+    if mode.stiffness.network.points[driver.point].motion is None:
         return mode.points[driver.point] * driver.gain
     # what holds the end in the mode, over w^2, is the mass that both move together, the mode and what the end imposes
-    pull: Quantity = 0
-    for number, bar in enumerate(network.bars):
-        if bar.left == driver.point:
-            pull += mode.slope(End(number, 0)) * (bar.impedance * bar.ratios[0])
-        if bar.right == driver.point:
-            pull -= mode.slope(End(number, 1)) * (bar.impedance * bar.ratios[1])
-    for link in network.links:
-        if driver.point in (link.left, link.right):
-            other = link.right if link.left == driver.point else link.left
-            pull += mode.points[other] * (link.ratio * link.stiffness)
-            if link.damping != 0:
-                pull += mode.points[other] * (mode.frequency * acb(0, link.ratio * link.damping))
-    return -pull * driver.gain / (mode.frequency * mode.frequency)
+    return -mode.pull(driver.point) * driver.gain / (mode.frequency * mode.frequency)
 
 
 def _array(rows: list[list[arb]], columns: int) -> Array:

@@ -36,7 +36,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.loads import Roughness
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.modes.projection import Projection, project
+from wavesym.programs.modes.projection import ExactProjection, Projection
 from wavesym.programs.modes.truncation import ModalModel
 
 
@@ -162,7 +162,7 @@ class UndampedModes(ModalModel[Projection]):
                     f"output.acceleration: {probe.name}: modes support no place without mass under a force (write "
                     "one with mass, or a motion of the ground in place of the force, or take pieces or `run`)"
                 )
-        return project(found, self.cut, self.outputs, self.drivers)
+        return ExactProjection(found, self.outputs, self.drivers).rounded()
 
     def rule(self, known: Projection) -> DampingRatios:
         """The damping of all modes."""
