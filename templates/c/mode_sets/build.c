@@ -9,20 +9,19 @@ static void weights_of(model *m, const projection *p, const damping_rule *rule)
         m->frequency[n] = w;
         m->damping[n] = ratio_at(rule, w, n - FREE);
         for (int load = 0; load < LOADS; ++load) {
-            m->push[load][n] = n < FOUND ? p->share[load][n] : n - FOUND == load ? above_all * above_all : 0;
+            m->push[load][n] = n < FOUND ? p->share[load][n].value : n - FOUND == load ? above_all * above_all : 0;
         }
     }
     for (int output = 0; output < FILLED; ++output) {
         const int counts = output < OUTPUTS && !is_zero[output];
         const int order = counts ? output_order[output] : 0;
         for (int load = 0; load < LOADS; ++load) {
-            real lost;
-            const real rest = counts && order < 2 ? rest_of(p, output, load, &lost) : 0;
+            const real rest = counts && order < 2 ? rest_of(p, output, load).value : 0;
             for (int k = 0; k < 3; ++k) {
-                m->direct[load][k][output] = counts && k == 2 - order ? p->imposed[output][load] : 0;
+                m->direct[load][k][output] = counts && k == 2 - order ? p->imposed[output][load].value : 0;
             }
             for (int n = 0; order == 2 && n < FOUND; ++n) {
-                m->direct[load][0][output] += p->output[output][n] * p->share[load][n];
+                m->direct[load][0][output] += p->output[output][n].value * p->share[load][n].value;
             }
             if (MODES == FOUND && counts && order == 0) {
                 m->direct[load][0][output] += rest;
@@ -34,7 +33,7 @@ static void weights_of(model *m, const projection *p, const damping_rule *rule)
         }
         for (int n = 0; n < FOUND; ++n) {
             const real w = p->w[n];
-            const real value = counts ? p->output[output][n] : 0;
+            const real value = counts ? p->output[output][n].value : 0;
             m->moved[n][output] = order == 0 ? value : order == 2 ? -w * w * value : 0;
             m->moving[n][output] = order == 1 ? value : order == 2 ? -2 * m->damping[n] * w * value : 0;
         }
@@ -64,15 +63,12 @@ static void step_block(const model *m, int first, int halves, motion *begin, rea
     }
 }
 
-/* The largest values at the ends and in the middle of steps. */
+/* The largest values at the ends and in the middle of steps, where they are larger than `largest`. */
 static void largest_values(const model *m, real *largest)
 {
     motion begin[BLOCK + 1];
     real values[2 * BLOCK][FILLED];
     rest(&begin[0]);
-    for (int output = 0; output < OUTPUTS; ++output) {
-        largest[output] = 0;
-    }
     for (int first = 0; 2 * first < HALVES; first += BLOCK) {
         const int halves = HALVES - 2 * first < 2 * BLOCK ? HALVES - 2 * first : 2 * BLOCK;
         step_block(m, first, halves, begin, values);
@@ -94,8 +90,8 @@ static real estimate_of(
     history f[LOADS];
     real worst = 0;
     for (int load = 0; load < LOADS; ++load) {
-        fall[load] = declines_under(m, rule, p->w[FOUND - 1], load);
-        f[load] = history_of(m, load);
+        f[load] = history_of(m, load, extreme_ratio(rule, p->w[FOUND - 1], 1) * p->w[FOUND - 1]);
+        fall[load] = declines_under(m, rule, p->w[FOUND - 1], load, &f[load]);
     }
     rounding_errors(m, p, f, rounded);
     for (int output = 0; output < OUTPUTS; ++output) {
@@ -145,7 +141,7 @@ static int build(model *m, const name_parameters *parameters)
 {
     projection p;
     damping_rule rule;
-    real largest[OUTPUTS];
+    real largest[OUTPUTS] = {0};
     real rounded[OUTPUTS];
     if (!find_model(m, parameters, &p, &rule)) {
         return 1;

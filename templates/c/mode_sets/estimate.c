@@ -68,77 +68,67 @@ static real load_at(const model *m, int load, int k)
     return total;
 }
 
-static declines declines_under(const model *m, const damping_rule *rule, real w, int load)
-{
-    const real least = extreme_ratio(rule, w, 1);
-    const real most = extreme_ratio(rule, w, 0);
-    const real fade = exp(-least * w * spacing);
-    real steep = 0;
-    real fading = 0;
-    real kinked = 0;
-    real sum = 0;
-    real slope = 0;
-    real together = 0;
-    for (int k = 0; k < SAMPLES && k * spacing <= tau_max; ++k) {
-        const real next = (load_at(m, load, k + 1) - load_at(m, load, k)) / spacing;
-        const real kink = fabs(next - slope) + 2 * DBL_EPSILON * (fabs(next) + fabs(slope));
-        sum = sum * fade + kink;
-        fading = most_of(fading, sum);
-        kinked = most_of(kinked, kink);
-        steep = most_of(steep, fabs(next));
-        slope = next;
-    }
-    for (int amplitude = 0; amplitude < AMPLITUDES; ++amplitude) {
-        together += amplitude_load[amplitude] == load ? fabs(m->factor[amplitude]) * in_step[amplitude] : 0;
-    }
-    declines made = {{0, 0, 0}, {3, 2, 1}};
-    if (rule->b > 0) {
-        const real late = steep * (2 / rule->b + rule->a);
-        const real small = least_of(1, least);
-        made.size[0] = late / (small * small);
-        made.size[1] = 4 * late / rule->b;
-        made.size[2] = 4 * steep / rule->b;
-        made.power[0] = 4;
-        made.power[1] = 4;
-        made.power[2] = 2;
-        return made;
-    }
-    const real faded = fading > 2 * kinked ? least_of(fading, 2 * together) : fading;
-    const real swing = most < 1 ? (most > 0 ? faded : together) / sqrt(1 - most * most) : HUGE_VAL;
-    const real crept = least > 0 ? steep / least : HUGE_VAL;
-    made.size[0] = least_of(swing + 2 * most * steep, most_of(2 * crept, 2 * most * steep));
-    made.size[1] = steep + swing;
-    if (least > 0) {
-        made.size[1] = least_of(steep + swing, least < 1 ? crept : steep);
-    }
-    made.size[2] = least_of(swing, 2 * crept);
-    return made;
-}
-
-/* A load of the scene: its largest value, its integral, and how much it and its slope vary. */
+/* A load of the scene: its largest value, its integral, and how much it and its slope vary; its steepest slope, its
+ * largest kink, and the largest of its kinks together, which fade at a rate. */
 typedef struct {
     real peak;
     real area;
     real turn;
     real bend;
+    real steep;
+    real kink;
+    real fading;
 } history;
 
-static history history_of(const model *m, int load)
+static history history_of(const model *m, int load, real rate)
 {
-    history f = {0, 0, 0, 0};
+    const real fade = exp(-rate * spacing);
+    history f = {0, 0, 0, 0, 0, 0, 0};
     real now = 0;
     real slope = 0;
+    real sum = 0;
     for (int k = 0; k < SAMPLES && k * spacing <= tau_max; ++k) {
         const real next = load_at(m, load, k + 1);
         const real steep = (next - now) / spacing;
+        const real kink = fabs(steep - slope) + 2 * DBL_EPSILON * (fabs(steep) + fabs(slope));
         f.peak = most_of(f.peak, fabs(next));
         f.area += (fabs(now) + fabs(next)) / 2 * spacing;
         f.turn += fabs(next - now);
-        f.bend += fabs(steep - slope);
+        f.bend += kink;
+        f.steep = most_of(f.steep, fabs(steep));
+        f.kink = most_of(f.kink, kink);
+        sum = sum * fade + kink;
+        f.fading = most_of(f.fading, sum);
         now = next;
         slope = steep;
     }
     return f;
+}
+
+static declines declines_under(const model *m, const damping_rule *rule, real w, int load, const history *f)
+{
+    const real least = extreme_ratio(rule, w, 1);
+    const real most = extreme_ratio(rule, w, 0);
+    real together = 0;
+    for (int amplitude = 0; amplitude < AMPLITUDES; ++amplitude) {
+        together += amplitude_load[amplitude] == load ? fabs(m->factor[amplitude]) * in_step[amplitude] : 0;
+    }
+    if (rule->b > 0) {
+        const real late = f->steep * (2 / rule->b + rule->a);
+        const real small = least_of(1, least);
+        const declines made = {{late / (small * small), 4 * late / rule->b, 4 * f->steep / rule->b}, {4, 4, 2}};
+        return made;
+    }
+    const real faded = f->fading > 2 * f->kink ? least_of(f->fading, 2 * together) : f->fading;
+    const real swing = most < 1 ? (most > 0 ? faded : together) / sqrt(1 - most * most) : HUGE_VAL;
+    const real crept = least > 0 ? f->steep / least : HUGE_VAL;
+    const real steep = 2 * most * f->steep;
+    declines made = {{0, f->steep + swing, least_of(swing, 2 * crept)}, {3, 2, 1}};
+    made.size[0] = least_of(swing + steep, most_of(2 * crept, steep));
+    if (least > 0) {
+        made.size[1] = least_of(made.size[1], least < 1 ? crept : f->steep);
+    }
+    return made;
 }
 
 /* The largest displacement and velocity of an oscillator under a load of share 1, and what they lose by rounding; how
@@ -209,24 +199,24 @@ static void rounding_errors(const model *m, const projection *p, const history *
             const real size[3] = {s.y, s.v, f[load].peak + w * w * s.y + 2 * z * w * s.v};
             const real lost[3] = {
                 s.y_lost, s.v_lost, steps * f[load].peak + change + w * w * s.y_lost + 2 * z * w * s.v_lost};
-            const real share = fabs(p->share[load][n]);
-            const real all = share + p->share_lost[load][n];
+            const real share = fabs(p->share[load][n].value);
+            const real all = share + p->share[load][n].lost;
             for (int output = 0; output < OUTPUTS; ++output) {
                 const int order = output_order[output];
-                const real value = fabs(p->output[output][n]);
-                const real loose = value * p->share_lost[load][n] + p->output_lost[output][n] * all;
+                const real value = fabs(p->output[output][n].value);
+                const real loose = value * p->share[load][n].lost + p->output[output][n].lost * all;
                 error[output] += loose * size[order] + value * share * (lost[order] + sum * size[order]);
             }
         }
         for (int output = 0; output < OUTPUTS; ++output) {
             const int order = output_order[output];
             const real grown = order == 2 ? f[load].peak : order == 1 ? f[load].area : f[load].area * tau_max;
-            error[output] += (p->imposed_lost[output][load] + 2 * steps * fabs(p->imposed[output][load])) * grown;
+            const inexact imposed = p->imposed[output][load];
+            error[output] += (imposed.lost + 2 * steps * fabs(imposed.value)) * grown;
             if (order < 2 && !is_zero[output]) {
-                real lost;
-                const real rest = fabs(rest_of(p, output, load, &lost));
+                const inexact rest = rest_of(p, output, load);
                 const real size = order == 0 ? f[load].peak : MODES > FOUND ? f[load].bend : 0;
-                error[output] += 2 * (lost + (steps + sum) * rest) * size;
+                error[output] += 2 * (rest.lost + (steps + sum) * fabs(rest.value)) * size;
             }
         }
     }
@@ -240,22 +230,20 @@ static real truncation_error(const projection *p, const damping_rule *rule, cons
 {
     const real w = p->w[FOUND - 1] * (1 - rounding);
     const int order = output_order[output];
-    const real left =
-        left_over(p, p->output[output], p->output_lost[output], output_power[output], p->output_total[output]);
+    const real left = left_over(p, p->output[output], output_power[output], p->output_total[output]);
     real error = 0;
     if (is_zero[output]) {
         return 0;
     }
     for (int load = 0; load < LOADS; ++load) {
         const int power = load_place[load] < ROWS;
-        const real other = left_over(p, p->share[load], p->share_lost[load], power, p->load_total[load]);
+        const real other = left_over(p, p->share[load], power, p->load_total[load]);
         const real size = fall[load].size[order];
         const real root = sqrt(left * other);
         /* nothing left out adds nothing */
         error += root > 0 ? root * size * pow(w, output_power[output] + power - fall[load].power[order]) : 0;
         if (rule->b > 0 && order < 2) {
-            real lost;
-            error += fabs(rest_of(p, output, load, &lost)) * size / (64 * w * w);
+            error += fabs(rest_of(p, output, load).value) * size / (64 * w * w);
         }
     }
     return error * (1 + 1e-12);

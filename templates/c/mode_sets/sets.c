@@ -51,7 +51,7 @@ static void missed_turns(const model *m, const projection *p, real step, real *m
         missed[output] = 0;
     }
     for (int load = 0; load < LOADS; ++load) {
-        const history f = history_of(m, load);
+        const history f = history_of(m, load, 0);
         for (int n = 0; n < FOUND; ++n) {
             const real w = p->w[n];
             const real decay = m->damping[n] * w;
@@ -59,11 +59,11 @@ static void missed_turns(const model *m, const projection *p, real step, real *m
             const real turned = w * memory / 2;
             const real x = turned * step;
             const real lost = turned * least_of(x * x * x / 3, 3);
-            const real size = swing_of(&f, w, m->damping[n], p->wrong[n]).free * fabs(p->share[load][n]);
+            const real size = swing_of(&f, w, m->damping[n], p->wrong[n]).free * fabs(p->share[load][n].value);
             for (int output = 0; output < OUTPUTS; ++output) {
                 const int order = output_order[output];
                 const real fast = order == 2 ? w * w : order == 1 ? w : 1;
-                missed[output] += is_zero[output] ? 0 : fabs(p->output[output][n]) * size * fast * lost;
+                missed[output] += is_zero[output] ? 0 : fabs(p->output[output][n].value) * size * fast * lost;
             }
         }
     }

@@ -68,14 +68,19 @@ static real lag_of_sine(real x, real sine)
     return x * x / 6 * series;
 }
 
-/* The mass of a shape, that of bars included: of what both ends do alike, and of what they do against each other. By the
- * rounding of angles it may be wrong by `lost`. */
-static real moved_mass(const chain *c, const angles *a, const real *moved, real *lost)
+/* A number, and what may be lost of it by rounding. */
+typedef struct {
+    real value;
+    real lost;
+} inexact;
+
+/* The mass of a shape, that of bars included: of what both ends do alike, and of what they do against each other; lost is
+ * what the rounding of angles makes of it. */
+static inexact moved_mass(const chain *c, const angles *a, const real *moved)
 {
-    real total = 0;
-    *lost = 0;
+    inexact total = {0, 0};
     for (int row = 0; row < ROWS; ++row) {
-        total += c->mass[row] * moved[row] * moved[row];
+        total.value += c->mass[row] * moved[row] * moved[row];
     }
     for (int bar = 0; bar < BARS; ++bar) {
         const real x = a->angle[bar];
@@ -87,8 +92,8 @@ static real moved_mass(const chain *c, const angles *a, const real *moved, real 
         const real lag = lag_of_sine(x, 2 * s * k);
         const real alike = share * (2 - lag) * (left + right) * (left + right) / (k * k);
         const real against = share * lag * (right - left) * (right - left) / (s * s);
-        total += alike + against;
-        *lost += DBL_EPSILON * (alike * (1 + fabs(x * s / k)) + against * (1 + fabs(x * k / s)));
+        total.value += alike + against;
+        total.lost += DBL_EPSILON * (alike * (1 + fabs(x * s / k)) + against * (1 + fabs(x * k / s)));
     }
     return total;
 }
@@ -135,10 +140,9 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     real pivot[ROWS];
     real beyond[ROWS];
     real weight[PLACES + 1];
-    int towards[ROWS];
+    int towards[ROWS] = {0};
     bonds b;
     real *const moved = found->moved;
-    real lost;
     for (int bar = 0; bar < BARS; ++bar) {
         bond_bar(w, a->half_sine[bar], a->half_cosine[bar], bar, &bars);
     }
@@ -147,9 +151,6 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     eliminate_beyond(&b, held, beyond);
     for (int place = 0; place < PLACES; ++place) {
         moved[place] = 0;
-    }
-    for (int row = 0; row < ROWS; ++row) {
-        towards[row] = 0;
     }
     const int root = loose_row(c, &b, held, beyond, weight);
     moved[root] = 1;
@@ -163,13 +164,13 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
             moved[row] = b.across[row] * moved[parent[row]] / pivot[row];
         }
     }
-    const real mass = moved_mass(c, a, moved, &lost);
-    const real scale = 1 / sqrt(mass);
+    const inexact mass = moved_mass(c, a, moved);
+    const real scale = 1 / sqrt(mass.value);
     for (int row = 0; row < ROWS; ++row) {
         moved[row] *= scale;
     }
     /* points may be nearly at rest between bars that resonate: then the shape is known as well as their angles are */
-    found->blurred = lost / mass + rounding;
+    found->blurred = mass.lost / mass.value + rounding;
     found->reach = most_of(1, 1 / (sqrt(weight[root]) * fabs(moved[root])));
     /* an angle is as wrong as its last digit: near a resonance of a bar that counts */
     for (int bar = 0; bar < BARS; ++bar) {
@@ -183,19 +184,19 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     found->wrong = rounding * energy(&b, moved);
 }
 
-/* The strain at the end of a bar, times its speed, in a mode; `lost` is the size of what it is a difference of. */
-static real slope_of_mode(const angles *a, real w, const real *moved, int bar, int side, real *lost)
+/* The strain at the end of a bar, times its speed, in a mode: it is a difference. */
+static inexact slope_of_mode(const angles *a, real w, const real *moved, int bar, int side)
 {
     const real left = bar_left_ratio[bar] * moved[bar_left[bar]];
     const real right = bar_right_ratio[bar] * moved[bar_right[bar]];
     const real s = a->half_sine[bar];
     const real k = a->half_cosine[bar];
     const real csc = a->csc[bar];
-    *lost = 0;
-    if (!(w > 0)) {
-        return 0;
-    }
-    *lost = fabs(w * csc) * (fabs(left) + fabs(right)) * (1 + fabs(a->angle[bar] * csc));
     const real cosine = (k - s) * (k + s);
-    return side ? w * (right * cosine - left) * csc : w * (right - left * cosine) * csc;
+    inexact slope = {0, 0};
+    if (w > 0) {
+        slope.value = side ? w * (right * cosine - left) * csc : w * (right - left * cosine) * csc;
+        slope.lost = rounding * fabs(w * csc) * (fabs(left) + fabs(right)) * (1 + fabs(a->angle[bar] * csc));
+    }
+    return slope;
 }

@@ -1,12 +1,20 @@
 /* statics.c: the shapes of loads that do not change, and by them sums over all modes (docs/modes.md). */
 #include "shapes.c"
 
-/* K where nothing moves, eliminated, and the motion without strain, of mass 1. */
+/* K where nothing moves, eliminated, and the motion without strain, of mass 1; 0 where the chain is held. */
 typedef struct {
     bonds bond;
     real pivot[ROWS];
     real still[PLACES + 1];
 } springs;
+
+/* How far places move, the accelerations by which bars are `bent`, and how far places would move if nothing cancelled: by
+ * rounding a shape is wrong by no more than `rounding` times its `size`, as no pivot is a difference. */
+typedef struct {
+    real moved[PLACES];
+    real bent[PLACES];
+    real size[PLACES];
+} static_shape;
 
 /* How far the end of a bar moves. */
 static real end_of(const real *moved, int bar, int side)
@@ -39,21 +47,15 @@ static void springs_of(const chain *c, springs *s)
     }
     assemble(c, 0, &bars, &s->bond);
     eliminate(&s->bond, held, s->pivot);
+    const real scale = FREE ? 1 / sqrt(linear_mass(c, rigid, -1, 0, 0)) : 0;
     for (int place = 0; place < PLACES; ++place) {
-        s->still[place] = FREE ? rigid[place] : 0;
-    }
-    if (FREE) {
-        const real scale = 1 / sqrt(linear_mass(c, s->still, -1, 0, 0));
-        for (int place = 0; place < PLACES; ++place) {
-            s->still[place] *= scale;
-        }
+        s->still[place] = FREE ? scale * rigid[place] : 0;
     }
 }
 
-/* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move.
- * `sizes` take all that is added as positive, so that nothing cancels: a result is wrong by no more than `rounding` times
- * what comes of them, as no pivot is a difference. */
-static void solve(const springs *s, const real *force, int sizes, real *moved)
+/* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move. With `sizes`
+ * all that is added is taken as positive, so that nothing cancels. */
+static void substitute(const springs *s, const real *force, int sizes, real *moved)
 {
     const bonds *const b = &s->bond;
     for (int place = 0; place < PLACES; ++place) {
@@ -100,52 +102,42 @@ static real along(const springs *s, const real *force, int sizes)
     return total;
 }
 
-/* The shape under forces; bars are `bent` by accelerations where nothing holds the chain. By rounding it is wrong by no
- * more than `rounding` times `size`. */
-static void loaded_shape(const chain *c, const springs *s, const real *force, real *moved, real *bent, real *size)
+/* The shape under forces: where nothing holds the chain they accelerate it, and the shape has no part in that. */
+static void loaded_shape(const chain *c, const springs *s, const real *force, static_shape *of)
 {
     real acting[PLACES];
     real pull[PLACES];
-    const real part = FREE ? along(s, force, 0) : 0;
+    const real part = along(s, force, 0);
     for (int place = 0; place < PLACES; ++place) {
-        bent[place] = part * s->still[place];
-        acting[place] = force[place];
+        of->bent[place] = part * s->still[place];
     }
-    if (!FREE) {
-        solve(s, acting, 0, moved);
-        solve(s, acting, 1, size);
-        return;
-    }
-    inertia(c, bent, pull);
+    inertia(c, of->bent, pull);
     for (int place = 0; place < PLACES; ++place) {
-        acting[place] -= pull[place];
+        acting[place] = force[place] - pull[place];
     }
-    solve(s, acting, 0, moved);
+    substitute(s, acting, 0, of->moved);
     for (int place = 0; place < PLACES; ++place) {
         acting[place] = fabs(force[place]) + fabs(pull[place]);
     }
-    solve(s, acting, 1, size);
-    inertia(c, size, pull);
+    substitute(s, acting, 1, of->size);
+    inertia(c, of->size, pull);
     const real sizes = along(s, pull, 1);
-    inertia(c, moved, pull);
+    inertia(c, of->moved, pull);
     real left = along(s, pull, 0);
     for (int bar = 0; bar < BARS; ++bar) {
         const real t = c->delay[bar];
-        left -= end_of(s->still, bar, 0) * end_of(bent, bar, 0) * c->impedance[bar] * t * t * t / 12;
+        left -= end_of(s->still, bar, 0) * end_of(of->bent, bar, 0) * c->impedance[bar] * t * t * t / 12;
     }
     for (int place = 0; place < PLACES; ++place) {
-        moved[place] -= left * s->still[place];
-        size[place] += sizes * fabs(s->still[place]);
+        of->moved[place] -= left * s->still[place];
+        of->size[place] += sizes * fabs(s->still[place]);
     }
 }
 
 /* The shape that the unit motion of a place imposes: forces of one sign, of which no sum loses digits. */
-static void imposed_shape(const chain *c, const springs *s, int place, real *moved)
+static void imposed_shape(const chain *c, const springs *s, int place, static_shape *of)
 {
-    real force[PLACES];
-    for (int other = 0; other < PLACES; ++other) {
-        force[other] = 0;
-    }
+    real force[PLACES] = {0};
     for (int bar = 0; bar < BARS; ++bar) {
         const real k = c->impedance[bar] / c->delay[bar] * bar_left_ratio[bar] * bar_right_ratio[bar];
         if (bar_left[bar] == place) {
@@ -164,39 +156,54 @@ static void imposed_shape(const chain *c, const springs *s, int place, real *mov
             force[link_left[link]] += k;
         }
     }
-    solve(s, force, 0, moved);
-    moved[place] = 1;
+    substitute(s, force, 0, of->moved);
+    of->moved[place] = 1;
+    for (int other = 0; other < PLACES; ++other) {
+        of->size[other] = of->moved[other];
+        of->bent[other] = 0;
+    }
 }
 
-/* The strain at the end of a bar, times its speed, in a shape under loads. */
-static real slope_of_shape(const chain *c, const real *moved, const real *bent, int bar, int side)
-{
-    const real t = c->delay[bar];
-    const real pull = t * (2 * end_of(bent, bar, side) + end_of(bent, bar, !side)) / 6;
-    return (end_of(moved, bar, 1) - end_of(moved, bar, 0)) / t + (side ? pull : -pull);
-}
-
-/* The sum of the squares of the slope at the end of a bar over w^4, of all modes; by rounding it is wrong by `lost`. */
-static real break_mass(const chain *c, const springs *s, int bar, int side, real *lost)
+/* The shape that lags behind an imposed one when that has the acceleration 1. */
+static void lagging_shape(const chain *c, const springs *s, const static_shape *imposed, static_shape *of)
 {
     real force[PLACES];
-    real moved[PLACES];
-    real size[PLACES];
-    const real gap = (side ? -1 : 1) / c->impedance[bar];
+    inertia(c, imposed->moved, force);
     for (int place = 0; place < PLACES; ++place) {
-        force[place] = 0;
+        force[place] = -force[place];
+        of->bent[place] = imposed->moved[place];
     }
+    substitute(s, force, 0, of->moved);
+    substitute(s, force, 1, of->size);
+}
+
+/* The strain at the end of a bar, times its speed, in a shape. */
+static inexact slope_of_shape(const chain *c, const static_shape *of, int bar, int side)
+{
+    const real t = c->delay[bar];
+    const real here = end_of(of->bent, bar, side);
+    const real there = end_of(of->bent, bar, !side);
+    const real pull = t * (2 * here + there) / 6;
+    const real size = (fabs(end_of(of->size, bar, 0)) + fabs(end_of(of->size, bar, 1))) / t;
+    inexact slope = {(end_of(of->moved, bar, 1) - end_of(of->moved, bar, 0)) / t + (side ? pull : -pull), 0};
+    slope.lost = rounding * (size + t * (fabs(here) + fabs(there)));
+    return slope;
+}
+
+/* The sum of the squares of the slope at the end of a bar over w^4, of all modes. */
+static inexact break_mass(const chain *c, const springs *s, int bar, int side)
+{
+    real force[PLACES] = {0};
+    static_shape of;
+    const real gap = (side ? -1 : 1) / c->impedance[bar];
     force[bar_left[bar]] -= bar_left_ratio[bar] / c->delay[bar];
     force[bar_right[bar]] += bar_right_ratio[bar] / c->delay[bar];
-    solve(s, force, 0, moved);
-    solve(s, force, 1, size);
-    const real mass = linear_mass(c, moved, bar, side, gap);
-    *lost = 2 * rounding * linear_mass(c, size, bar, side, fabs(gap));
-    if (!FREE) {
-        return mass;
-    }
-    inertia(c, moved, force);
+    substitute(s, force, 0, of.moved);
+    substitute(s, force, 1, of.size);
+    inertia(c, of.moved, force);
     const real part =
         along(s, force, 0) + end_of(s->still, bar, side) * gap * c->impedance[bar] * c->delay[bar] / 2;
-    return mass - part * part;
+    inexact mass = {linear_mass(c, of.moved, bar, side, gap) - part * part, 0};
+    mass.lost = 2 * rounding * linear_mass(c, of.size, bar, side, fabs(gap));
+    return mass;
 }

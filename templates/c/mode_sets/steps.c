@@ -3,26 +3,15 @@
 
 static void rest(motion *s)
 {
-    for (int n = 0; n < MODES; ++n) {
-        s->y[n] = 0;
-        s->v[n] = 0;
-    }
-    for (int j = 0; j < LOADS; ++j) {
-        s->load[j] = 0;
-        s->once[j] = 0;
-        s->twice[j] = 0;
-    }
+    const motion none = {{0}, {0}, {0}, {0}, {0}};
+    *s = none;
 }
 
 /* How they move `time` later, for which `t` are the turns, while loads go by `slope`. */
 static void advance(const model *m, const turns *t, real time, const real *slope, const motion *s, motion *out)
 {
-    real start[MODES];
-    real ramp[MODES];
-    for (int n = 0; n < MODES; ++n) {
-        start[n] = 0;
-        ramp[n] = 0;
-    }
+    real start[MODES] = {0};
+    real ramp[MODES] = {0};
     for (int j = 0; j < LOADS; ++j) {
         for (int n = 0; n < MODES; ++n) {
             start[n] += m->push[j][n] * s->load[j];
