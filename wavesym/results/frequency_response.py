@@ -19,8 +19,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array, Complex
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
-from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.results.modal_transfer import ModalTransfer
+from wavesym.results.modal_transfer import MOST_MODES, transfers
 from wavesym.results.optional import require_packages
 from wavesym.results.presentation import OutputRows, csv_line
 from wavesym.results.resonance import AmplitudePeaks, peaks
@@ -35,7 +34,7 @@ _CLOSER = 2.0 ** -np.arange(12)  # of the distance of two frequencies
 _RIGID = 1e-6  # of what is above a frequency, one that is 0 but for rounding
 _MOST_POINTS = 1_000_000
 _BITS, _MOST_BITS = 128, 1 << 13
-_FIRST_MODES, _MOST_MODES = 32, 2048
+_TIMES = 2  # as many modes, where damping ratios need more
 _SHARP, _ZERO, _BITS_OF_ZERO = 70, 160, 1024
 _BITS_OF_MODES = 192
 _ROUNDING = 2.0**-52  # both parts, each to the nearest double
@@ -322,29 +321,22 @@ def _modal(model: Model, load: HarmonicLoad, given: Array, values: Complex) -> A
 
     ToleranceError where that are too many.
     """
-    tolerance, count, modes = nearest(model.tolerance), _FIRST_MODES, UndampedModes(model)
-    while True:
-        with ctx.workprec(_BITS_OF_MODES):
-            transfer = ModalTransfer(modes, load, count)
-            highest = max((angular(model, f) for f in given.tolist()), default=arb(0))
-            errors = np.array([upper_double(each) for each in transfer.truncation_error(highest)])
-            enough = np.isfinite(errors).all()
-            if enough:
-                left = errors
-                for k, f in enumerate(given.tolist()):
-                    found = [acb(each) for each in transfer(angular(model, f))]
-                    values[:, k] = [_nearest(each) for each in found]
-                    radii = [
-                        upper_double(each.real.rad() + each.imag.rad()) if each.is_finite() else nan for each in found
-                    ]
-                    errors = np.fmax(errors, left + radii)
-                largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
-                enough = (errors <= tolerance * largest).all()
-        if enough:
-            return errors
-        if 2 * count > _MOST_MODES:
-            raise ToleranceError(
-                f"output.tolerance: {tolerance:.1e} would need more than {_MOST_MODES} modes in a frequency response; "
-                "a larger tolerance, lower frequencies or Rayleigh damping (modes = [i, j]) help"
-            )
-        count *= 2
+    tolerance = nearest(model.tolerance)
+    with ctx.workprec(_BITS_OF_MODES):
+        highest = max((angular(model, f) for f in given.tolist()), default=arb(0))
+        for transfer, rests in transfers(model, load, highest, _TIMES):
+            errors = left = np.array([upper_double(each) for each in rests])
+            if not np.isfinite(errors).all():
+                continue
+            for k, f in enumerate(given.tolist()):
+                found = [acb(each) for each in transfer(angular(model, f))]
+                values[:, k] = [_nearest(each) for each in found]
+                radii = [upper_double(each.real.rad() + each.imag.rad()) if each.is_finite() else nan for each in found]
+                errors = np.fmax(errors, left + radii)
+            largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
+            if (errors <= tolerance * largest).all():
+                return np.asarray(errors)
+    raise ToleranceError(
+        f"output.tolerance: {tolerance:.1e} would need more than {MOST_MODES} modes in a frequency response; "
+        "a larger tolerance, lower frequencies or Rayleigh damping (modes = [i, j]) help"
+    )

@@ -10,6 +10,7 @@ which is summed by Cauchy and Schwarz, as sums of squares over all modes are kno
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,9 +22,13 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
 from wavesym.programs.modes.projection import Driver, ExactProjection, modal_output
 from wavesym.programs.modes.undamped_modes import UndampedModes, damping_ratios
-from wavesym.results.transfer import ORDERS, HarmonicLoad, laplace
+from wavesym.results.amplitude_polynomials import Transfers
+from wavesym.results.transfer import ORDERS, HarmonicLoad, Transfer, laplace
 
 _I = acb(0, 1)
+_FIRST_MODES = 32
+MOST_MODES = 2048
+"""Whose responses are summed up."""
 
 
 @dataclass(frozen=True)
@@ -166,3 +171,18 @@ class ModalTransfer:
             for rows, powers, totals in zip((known.values, known.shares), known.powers, known.totals, strict=True)
         )
         return [each.max(arb(0)) for each in outputs], [each.max(arb(0)) for each in loads]
+
+
+def transfers(model: Model, load: HarmonicLoad, last: arb, times: int) -> Iterator[tuple[Transfers, list[arb]]]:
+    """The transfer functions, and what modes left out may add to each of them up to a `last` frequency.
+
+    Where each mode has a damping ratio of its own they come again and again, with so many times as many modes.
+    """
+    if model.damping is None or model.damping.modes is not None or not model.damping.acts:
+        yield Transfer(model, load), [arb(0) for _ in model.probes]
+        return
+    modes, count = UndampedModes(model), _FIRST_MODES
+    while count <= MOST_MODES:
+        transfer = ModalTransfer(modes, load, count)
+        yield transfer, transfer.truncation_error(last)
+        count *= times

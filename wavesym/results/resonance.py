@@ -24,16 +24,15 @@ from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, upper_double
-from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.amplitude_polynomials import (
     Transfers,
     reaches_zero,
     squared_amplitudes,
     transfer_fractions,
 )
-from wavesym.results.modal_transfer import ModalTransfer
+from wavesym.results.modal_transfer import MOST_MODES, transfers
 from wavesym.results.presentation import csv_line, output_number
-from wavesym.results.transfer import HarmonicLoad, Transfer, angular
+from wavesym.results.transfer import HarmonicLoad, angular
 
 _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
 _NOISE = arb(2) ** -128  # of an amplitude: one that is no higher than by so much is the same
@@ -47,7 +46,7 @@ _ASIDE = arb(509) / 1024
 _NEWTON = 3
 _HALVINGS = 30
 _PARTS = 64  # of the band at first
-_FIRST_MODES, _MOST_MODES = 32, 2048
+_TIMES = 4  # as many modes, where damping ratios need more
 
 
 @dataclass(frozen=True)
@@ -117,17 +116,8 @@ class AmplitudePeaks:
     def json(self) -> str:
         """As JSON; null in place of what is not bounded."""
         peaks = [
-            {
-                "name": p.name,
-                "unit": p.unit,
-                "frequency": p.frequency,
-                "amplitude": p.amplitude if isfinite(p.amplitude) else None,
-                "low": p.low,
-                "high": None if p.high == inf else p.high,
-                "frequency_low": None if isnan(p.frequency_low) else p.frequency_low,
-                "frequency_high": None if isnan(p.frequency_high) else p.frequency_high,
-            }
-            for p in self.peaks
+            {key: each if isinstance(each, str) or isfinite(each) else None for key, each in vars(peak).items()}
+            for peak in self.peaks
         ]
         about = {"load": self.load, "load_unit": self.load_unit, "frequency_label": self.frequency_label}
         return json.dumps({"name": self.name, **about, "band": list(self.band), "peaks": peaks}, indent=2) + "\n"
@@ -163,13 +153,15 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Amplitud
 def _searches(model: Model, load: HarmonicLoad, first: arb, last: arb, shortest: arb) -> list[_Search]:
     """What is known of the greatest amplitude of each output from one frequency to another."""
     parts = len(model.network.points)
-    for transfer, rests in _transfers(model, load, last):
+    for transfer, rests in transfers(model, load, last, _TIMES):
         found = [_Search(rest) for rest in rests]
         if not all(rest.is_finite() for rest in rests):
             continue
         _search(transfer, found, first, last, parts, shortest)
         if all(each.rest**2 <= each.square * arb(model.tolerance) ** 2 for each in found):
             break
+    if not all(each.is_finite() for each in rests):
+        raise CostError(f"--to: {MOST_MODES} modes lie below it, the limit is {MOST_MODES} (a lower frequency helps)")
     for k, each in enumerate(found):
         terms = transfer.lowest_terms(k) if each.is_open else None
         if terms is not None:
@@ -400,17 +392,3 @@ def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb)
         better = (search.at - slope / (2 * bend)).mid()
         if first < better < last:
             search.amplitude_squared(better, squared_amplitudes(transfer, better)[k][0])
-
-
-def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Transfers, list[arb]]]:
-    """The transfer functions, better and better, and what modes left out may add to each of them in the band."""
-    if model.damping is None or model.damping.modes is not None or not model.damping.acts:
-        yield Transfer(model, load), [arb(0) for _ in model.probes]
-        return
-    modes, count = UndampedModes(model), _FIRST_MODES
-    while count <= _MOST_MODES:
-        transfer = ModalTransfer(modes, load, count)
-        yield transfer, transfer.truncation_error(last)
-        count *= 4
-    if not transfer.truncation_error(last)[0].is_finite():
-        raise CostError(f"--to: {count} modes lie below it, the limit is {_MOST_MODES} (a lower frequency helps)")

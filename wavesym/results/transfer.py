@@ -21,8 +21,8 @@ from flint import acb, arb, fmpq
 from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.branches import BranchTree
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.exact.modes.harmonic import Amplitudes, BallFrequency, Quantity
-from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, PolynomialFrequency
+from wavesym.exact.modes.harmonic import Amplitudes, Quantity, ball_frequency
+from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, polynomial_frequency
 from wavesym.exact.modes.shape import rigid, rigid_mass
 from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
 from wavesym.mechanics.model import Model
@@ -144,7 +144,7 @@ class Transfer:
         if len(self.load.drives) != 1 or self._rayleigh is not None:
             return None
         ((point, coefficients),) = self.load.drives
-        amplitudes = Amplitudes(self._trees[point], BallFrequency(w), undivided=True)
+        amplitudes = Amplitudes(self._trees[point], ball_frequency(w), undivided=True)
         motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
         made = []
         for probe in self.model.probes:
@@ -184,7 +184,7 @@ class Transfer:
         steps = sum(bar.delay / measure for bar in network.bars)
         if (1 + 2 * steps) * (2 * len(network.points) + len(network.bars)) > _MOST_TERMS:
             return None
-        w, total, divisor = PolynomialFrequency(measure), Laurent.constant(0), Laurent.constant(1)
+        w, total, divisor = polynomial_frequency(measure), Laurent.constant(0), Laurent.constant(1)
         for point, coefficients in self.load.drives:
             amplitudes = Amplitudes(self._trees[point], w, undivided=True)
             order = ORDERS.get(probe.quantity, 0) - ORDERS.get(network.points[point].motion or "", 0)
@@ -226,7 +226,7 @@ class Transfer:
         return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
     def _undamped_outputs(self, point: int, w: Quantity) -> list[Quantity]:
-        amplitudes = Amplitudes(self._trees[point], BallFrequency(w))
+        amplitudes = Amplitudes(self._trees[point], ball_frequency(w))
         return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
 
     @cached_property

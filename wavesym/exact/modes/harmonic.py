@@ -16,8 +16,10 @@ The arithmetic is that of a `Frequency`: balls, power series of them about one f
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from math import prod
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from flint import acb, acb_series, arb, fmpq
 
@@ -37,40 +39,32 @@ class Turn(NamedTuple):
     cosine: Quantity
 
 
-class Frequency(Protocol):
-    """A frequency w in one arithmetic."""
+@dataclass(frozen=True)
+class Frequency:
+    """A frequency w in one arithmetic.
 
-    @property
-    def square(self) -> Quantity:
-        """w^2."""
+    Attributes:
+        square: w^2.
+        rate: i w.
+        turn: sin(w T)/w and cos(w T) of a delay T.
+        number: an exact number in this arithmetic.
+    """
 
-    @property
-    def rate(self) -> Quantity:
-        """i w."""
-
-    def number(self, value: Any) -> Quantity:
-        """A number that does not depend on it."""
-
-    def turn(self, delay: Quantity) -> Turn:
-        """Those of a delay."""
+    square: Quantity
+    rate: Quantity
+    turn: Callable[[Quantity], Turn]
+    number: Callable[[Any], Quantity] = arb
 
 
-class BallFrequency:
+def ball_frequency(w: Quantity) -> Frequency:
     """A frequency that is a ball, or a power series of complex ones that does not begin with 0."""
 
-    def __init__(self, w: Quantity) -> None:
-        self._w = w
-        self.square, self.rate = w * w, w * _I
-
-    def number(self, value: Any) -> arb:
-        """As a ball."""
-        return arb(value)
-
-    def turn(self, delay: Quantity) -> Turn:
-        """In balls, or power series of them."""
-        angle = self._w * delay
-        sine = angle.sin() * inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
+    def turn(delay: Quantity) -> Turn:
+        angle = w * delay
+        sine = angle.sin() * inverse(w) if isinstance(angle, acb_series) else angle.sinc() * delay
         return Turn(sine, angle.cos())
+
+    return Frequency(w * w, w * _I, turn)
 
 
 class _Medium(NamedTuple):

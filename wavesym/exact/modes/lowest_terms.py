@@ -11,14 +11,13 @@ and between two w at which it differs in sign Q has a zero that nothing damps.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import count
 from math import factorial, inf
 from typing import Any
 
 from flint import Ordering, acb, acb_series, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from wavesym.exact.modes.harmonic import UNKNOWN, Quantity, Turn, inverse
+from wavesym.exact.modes.harmonic import UNKNOWN, Frequency, Quantity, Turn, inverse
 
 _RING = fmpq_mpoly_ctx.get(("s", "z"), Ordering.lex)
 _S, _Z = _RING.gens()
@@ -69,31 +68,16 @@ def _laurent(value: Any) -> Laurent:
     return value if isinstance(value, Laurent) else Laurent(_RING.constant(fmpq(value)))
 
 
-@dataclass(frozen=True)
-class PolynomialFrequency:
-    """Any frequency, of a network whose delays are multiples of `measure` (harmonic.Frequency)."""
+def polynomial_frequency(measure: fmpq) -> Frequency:
+    """Any frequency, of a network whose delays are multiples of `measure`."""
 
-    measure: fmpq
-
-    @property
-    def square(self) -> Laurent:
-        """w^2 = -s^2."""
-        return Laurent(-(_S**2))
-
-    @property
-    def rate(self) -> Laurent:
-        """s."""
-        return Laurent(_S)
-
-    def number(self, value: Any) -> Laurent:
-        """As a polynomial."""
-        return _laurent(value)
-
-    def turn(self, delay: fmpq) -> Turn:
+    def turn(delay: fmpq) -> Turn:
         """sinh(s T)/s and cosh(s T)."""
-        steps = int(delay / self.measure)
+        steps = int(delay / measure)
         twice, half = _Z ** (2 * steps), fmpq(1, 2)
         return Turn(Laurent((twice - 1) * half, (1, steps)), Laurent((twice + 1) * half, (0, steps)))
+
+    return Frequency(Laurent(-(_S**2)), Laurent(_S), turn, _laurent)
 
 
 class LowestTerms:

@@ -17,8 +17,8 @@ as that is from 0, what it turns by from end to end is the angle between its val
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from math import inf, pi, prod
 from typing import Any, NamedTuple
@@ -27,7 +27,7 @@ import numpy as np
 from flint import acb, acb_series, arb, arb_series, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.modes.branches import BranchTree
-from wavesym.exact.modes.harmonic import BallFrequency, Frequency, Quantity, Resistances, Turn
+from wavesym.exact.modes.harmonic import Frequency, Quantity, Resistances, Turn, ball_frequency
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
@@ -87,20 +87,6 @@ def bare_ends(network: Network) -> Iterator[BareEnd]:
             point = network.points[at]
             if point.mass == 0 and point.stiffness == 0 and point.motion is None and held[at] == 1:
                 yield BareEnd(number, side, bar.ratios[side] ** 2 * bar.impedance, point.damping)
-
-
-@dataclass(frozen=True)
-class _Rate:
-    """A frequency by s = i w, in an arithmetic that takes what its `number` makes (harmonic.Frequency)."""
-
-    rate: Quantity
-    turn: Callable[[Any], Turn]
-    number: Callable[[Any], Quantity] = arb
-
-    @property
-    def square(self) -> Quantity:
-        """w^2."""
-        return -self.rate * self.rate
 
 
 class Circles:
@@ -177,7 +163,9 @@ class Circles:
         if not self.is_finite:
             return None
         s = fmpq_poly([0, 1])
-        found: fmpq_poly = self._determinant(_Rate(s, lambda delay: Turn(delay, delay), lambda each: fmpq_poly([each])))
+        found: fmpq_poly = self._determinant(
+            Frequency(-s * s, s, lambda delay: Turn(delay, delay), lambda x: fmpq_poly([x]))
+        )
         return found
 
     def count(self, radius: float) -> int | None:
@@ -232,7 +220,7 @@ class Circles:
             ctx.cap = terms
             with ctx.workprec(bits):
                 s = arb_series([0, 1], prec=terms)
-                found = arb_series(self._determinant(_Rate(s, turn)), prec=terms).coeffs()
+                found = arb_series(self._determinant(Frequency(-s * s, s, turn)), prec=terms).coeffs()
         finally:
             ctx.cap = cap
         return [*found, *[arb(0)] * (terms - len(found))]
@@ -246,7 +234,7 @@ class Circles:
         def turn(delay: fmpq) -> Turn:
             return Turn((far * delay).sinh() / far, (far * delay).cosh())
 
-        whole = arb(self._determinant(_Rate(far, turn)))
+        whole = arb(self._determinant(Frequency(-far * far, far, turn)))
         return whole * (radius / far) ** terms / (1 - radius / far)
 
     def _count_turns(self, radius: float) -> int | None:
@@ -287,7 +275,7 @@ class Circles:
         return bool(others < abs(powers[0]))
 
     def _value(self, w: Quantity) -> Quantity:
-        return self._determinant(BallFrequency(w))
+        return self._determinant(ball_frequency(w))
 
     def _determinant(self, w: Frequency) -> Quantity:
         """A of all trees."""
