@@ -1,7 +1,7 @@
 """Many records through one structure, by modes that all of them share: extremes, also between samples, and histories.
 
 Outputs are known at the samples and halfway between, by `RecordResponse`. How far they bend there tells how much higher
-a top in between may be; the steps that may have the highest one are looked at closely (`tops`). Nothing of that is
+a top in between may be; the steps that may have the highest one are looked at closely. Nothing of that is
 proved, as in `sampling`. That the modes are enough is: for each record.
 """
 
@@ -19,10 +19,9 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.loads import Roughness, scaled_roughness
-from wavesym.programs.modes.records import RecordResponse
+from wavesym.programs.modes.records import Places, RecordResponse
 from wavesym.programs.modes.truncation import ModalModel
 from wavesym.results.near_zero import zero_within
-from wavesym.results.tops import Places, SuspectSteps, tops
 
 _PARTS = 2
 _PER_STEP, _PER_CROSSING = 16, 4  # samples of a closer look, as of `stepping`
@@ -33,6 +32,7 @@ _RECORDS = 64  # whose states are kept at a time
 _ROUNDING = 64 * 2.0**-53
 _ATTEMPTS, _MOST_MODES = 4, 600
 _HARDEST = 3  # records that tell how many modes all of them need
+_NEARER = 8  # times, in the second look at a top
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     largest = np.abs(values).max(axis=2)
     horizon = model.horizon()
     errors = np.array([chain.errors(known, count, records.roughness(k, horizon)) for k in range(len(records.samples))])
-    errors += (_ROUNDING * np.sqrt(records.samples.shape[1]) + chain.looseness(count)) * largest
+    errors += _ROUNDING * np.sqrt(records.samples.shape[1]) * largest
     errors[:, np.array(chain.zero_outputs)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(errors == 0, 0.0, errors / np.maximum(largest - errors, 0.0))
@@ -212,7 +212,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, samples: Arr
     places, row = np.unique(record * n + step, return_inverse=True)
     inside = response.step_states(samples, known, *np.divmod(places, n))
     group = (record * outputs + output) * 2 + side
-    best, when = tops(response, SuspectSteps(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
+    best, when = _tops(response, _SuspectSteps(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
     values, taus = np.zeros((records, outputs, 2)), np.full((records, outputs, 2), begin)
     which = np.unique(group)
     values.ravel()[which] = best
@@ -254,6 +254,69 @@ def _candidates(seen: Array, end: float) -> tuple[Places, Places, Places, Places
     group, step = np.divmod(np.unique(np.concatenate(keys)), blocks * steps)
     record, rest = np.divmod(group, outputs * 2)
     return record, *np.divmod(rest, 2), step
+
+
+@dataclass(frozen=True)
+class _SuspectSteps:
+    """What is looked at, each an array over steps: the `group` that it is one of, the `step` and the `output`, the
+    `sign` of what is high, how long the step is, and what is known `inside` it (steps, numbers)."""
+
+    group: Places
+    step: Places
+    output: Places
+    sign: Array
+    length: Array
+    samples: Array
+
+
+def _tops(response: RecordResponse, steps: _SuspectSteps, points: int) -> tuple[Array, Array]:
+    """Of each group, in order, the greatest value times its sign, as it is, and when, since records begin."""
+    values = _signed_values(response, steps, points)
+    before, here, after = values[:, :-2], values[:, 1:-1], values[:, 2:]
+    bend = 2 * here - before - after
+    top = (bend > 0) & (np.abs(after - before) <= 2 * bend)  # within a point of the middle one
+    estimate = values.copy()
+    estimate[:, 1:-1] += np.where(top, (after - before) ** 2 / (8 * np.where(top, bend, 1.0)), 0.0)
+    order = np.lexsort((steps.step, -estimate.max(axis=1), steps.group))
+    _, firsts = np.unique(steps.group[order], return_index=True)
+    row = order[firsts]
+    length, output, sign, inside = steps.length[row], steps.output[row], steps.sign[row], steps.samples[row]
+    point, each = estimate[row].argmax(axis=1), np.arange(len(row))
+    apart, values = length / (points - 1), values[row]
+    s, value = point * apart, values[each, point]
+
+    near = np.clip(point, 1, points - 2)
+    shift = _vertex(values[each, near - 1], values[each, near], values[each, near + 1])
+    finer = apart / _NEARER
+    middle = np.clip((near + shift) * apart, finer, length - finer)
+    thrice = np.concatenate([middle + k * finer for k in (-1, 0, 1)])
+    trio = np.tile(sign, 3) * response.value_at(np.tile(inside, (3, 1)), thrice, np.tile(output, 3))
+    trio = trio.reshape(3, -1)
+    last = middle + _vertex(*trio) * finer
+    for at, found in ((middle, trio[1]), (last, sign * response.value_at(inside, last, output))):
+        better = found > value
+        value, s = np.where(better, found, value), np.where(better, at, s)
+    return sign * value, steps.step[row] * response.spacing + s
+
+
+def _signed_values(response: RecordResponse, steps: _SuspectSteps, points: int) -> Array:
+    """Values times their sign at equally spaced instants of each step, its ends included: (steps, points)."""
+    made = np.empty((len(steps.step), points))
+    for length in np.unique(steps.length).tolist():
+        reads = response.reads(length * np.arange(points) / (points - 1))
+        of_length = steps.length == length
+        for output in range(reads.shape[2]):
+            rows = np.flatnonzero(of_length & (steps.output == output))
+            made[rows] = steps.samples[rows] @ reads[:, :, output].T
+    made *= steps.sign[:, None]
+    return made
+
+
+def _vertex(before: Array, here: Array, after: Array) -> Array:
+    """Where a parabola through three values has its top, in steps from the middle one; 0 where it has none there."""
+    bend = 2 * here - before - after
+    safe = np.where(bend > 0, bend, 1.0)
+    return np.clip(np.where(bend > 0, (after - before) / (2 * safe), 0.0), -1.0, 1.0)
 
 
 _ROOMS = local()

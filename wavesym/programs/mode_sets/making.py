@@ -160,7 +160,6 @@ class ModeSetsTables:
         count, loads, outputs = self.mode_count, len(like.drivers), len(model.probes)
         spacing, tau_max = nearest(self.amplitudes.step), model.horizon()
         whole = int(tau_max / spacing + 5e-10)
-        starts = self._starts
         crossing = nearest(model.network.shortest) if model.network.bars else spacing
         return {
             "modes": count + (loads if rayleigh[0] else 0),
@@ -184,7 +183,7 @@ class ModeSetsTables:
             "sums": int(self._has_sums),
             "points": max(_POINTS, -int(-spacing * _PER_CROSSING // crossing)) + 1,
             "block": _BLOCK,
-            **starts,
+            **self._starts,
             "spacing": spacing,
             "tau_max": tau_max,
             "tolerance": nearest(model.tolerance),
@@ -198,57 +197,41 @@ class ModeSetsTables:
         return ground and any(output.order < 2 for output in like.outputs)
 
     @cached_property
-    def _starts(self) -> dict[str, int]:
-        """Where numbers of each kind begin."""
-        model = self.parameters.model
-        rods, places, damping = len(model.network.bars), len(self._network.points), model.damping
-        sizes = {
-            "rod_stiffness": rods,
-            "rod_mass": rods,
-            "mass": places,
-            "spring": places,
-            "link": len(self._network.links),
-            "ratio": len(damping.ratios) if damping else 1,
-            "factor": self.amplitudes.samples.shape[1],
-        }
-        *begins, values = firsts(sizes.values())
-        return {**dict(zip(sizes, begins, strict=True)), "values": values}
-
-    def _values(self) -> Iterator[float]:
-        """The scene's own numbers, in this order."""
+    def _numbers(self) -> dict[str, list[fmpq]]:
+        """The scene's own numbers by kind, in the order in which they stand."""
         model, order = self.parameters.model, sorted(self._places, key=self._places.__getitem__)
         bars, points = model.network.bars, [self._network.points[point] for point in order]
-        yield from (nearest(bar.impedance / bar.delay) for bar in bars)
-        yield from (nearest(bar.impedance * bar.delay) for bar in bars)
-        yield from (nearest(point.mass) for point in points)
-        yield from (nearest(point.stiffness) for point in points)
-        yield from (nearest(link.stiffness) for link in self._network.links)
-        yield from map(nearest, model.damping.ratios if model.damping else (fmpq(0),))
-        yield from (nearest(each.weight) for each in self.parameters.amplitudes)
-        yield from [1.0] * (0 if self.parameters.amplitudes else self.amplitudes.samples.shape[1])
+        return {
+            "rod_stiffness": [bar.impedance / bar.delay for bar in bars],
+            "rod_mass": [bar.impedance * bar.delay for bar in bars],
+            "mass": [point.mass for point in points],
+            "spring": [point.stiffness for point in points],
+            "link": [link.stiffness for link in self._network.links],
+            "ratio": list(model.damping.ratios if model.damping else (fmpq(0),)),
+            "factor": [each.weight for each in self.parameters.amplitudes]
+            or [fmpq(1)] * self.amplitudes.samples.shape[1],
+        }
+
+    @cached_property
+    def _starts(self) -> dict[str, int]:
+        """Where numbers of each kind begin."""
+        return dict(zip([*self._numbers, "values"], firsts(map(len, self._numbers.values())), strict=True))
 
     def _value_of(self, field: str, label: str, number: int) -> int:
         """Where a parameter stands among them."""
         kind, _, last = label.rpartition("_")
-        starts = self._starts
-        match field, kind:
-            case "load", _:
-                return starts["factor"] + number
-            case "damping", _:
-                return starts["ratio"] + number
-            case "stiffness", "stiffness_bar":
-                return starts["rod_stiffness"] + int(last)
-            case "rod_mass", _:
-                return starts["rod_mass"] + int(last)
-            case "stiffness", "stiffness_link":
-                return starts["link"] + int(last)
-        return starts["mass" if field == "mass" else "spring"] + self._places[int(last)]
+        of_rods_and_links = {"stiffness_bar": "rod_stiffness", "rod_mass_bar": "rod_mass", "stiffness_link": "link"}
+        if field in ("load", "damping"):
+            return self._starts["factor" if field == "load" else "ratio"] + number
+        if kind in of_rods_and_links:
+            return self._starts[of_rods_and_links[kind]] + int(last)
+        return self._starts["mass" if field == "mass" else "spring"] + self._places[int(last)]
 
     def _tables(self) -> Tables:
         like, amplitudes = self.parameters.like, self.amplitudes
         spacing = nearest(amplitudes.step)
         return {
-            "value_of_scene": tuple(self._values()),
+            "value_of_scene": tuple(nearest(number) for kind in self._numbers.values() for number in kind),
             **self._parameter_tables(),
             **self.layout,
             "rigid": tuple(self._rigid()),
