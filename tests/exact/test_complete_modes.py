@@ -12,7 +12,7 @@ import pytest
 
 import wavesym
 from wavesym.cli import main
-from wavesym.exact.modes import complete_modes
+from wavesym.exact.modes import damped_spectrum
 from wavesym.exact.modes.equal_branches import Part, take_apart
 from wavesym.exact.modes.turns import Circles
 from wavesym.mechanics.network import Network
@@ -228,7 +228,7 @@ def test_below_where_frequencies_meet_modes_are_printed(
 
     made = scene(["fixed", {"rod": 1}, G], [TWIG] * 3, ratio=-2)
     every = wavesym.modes(made, 3)
-    monkeypatch.setattr(complete_modes, "take_apart", whole)
+    monkeypatch.setattr(damped_spectrum, "take_apart", whole)
     file = tmp_path / "s.toml"
     twig = '{ rod = 1, impedance = "1/2" }, { mass = 1, dashpot = "1/100" }'
     branches = [f'[[system.branch]]\nfrom = "g"\nname = "b{k}"\nratio = -2\nparts = [{twig}]\n' for k in range(3)]

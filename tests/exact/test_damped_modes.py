@@ -13,7 +13,8 @@ from scipy.linalg import eig
 from tests.exact.test_modes import COT, CSC, W, by_the_law
 from tests.support.modal import by_elements, chain
 from wavesym.exact.modes import damped_modes as found
-from wavesym.exact.modes.damped_modes import DampedSpectrum, estimate_frequencies, remove_dashpots
+from wavesym.exact.modes.damped_modes import estimate_frequencies, remove_dashpots
+from wavesym.exact.modes.damped_spectrum import DampedSpectrum
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, Network, Point
 from wavesym.mechanics.node import Node, Rod

@@ -13,9 +13,9 @@ from flint import arb, fmpq
 
 import wavesym
 from tests.support.modal import chain
-from wavesym.exact.modes import complete_modes
+from wavesym.exact.modes import damped_spectrum
 from wavesym.exact.modes import turns as found_by
-from wavesym.exact.modes.damped_modes import FoundModes
+from wavesym.exact.modes.shape import FoundModes
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.exact.modes.turns import Circles, absorb
 from wavesym.scene import Scene
@@ -107,14 +107,14 @@ def test_without_rods_they_are_eigenvalues(seed: int) -> None:
 
 def test_where_a_mode_is_missed_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     """The third of a rod with a dashpot is left out by all searches: none is missed below it, and no more is said."""
-    every = complete_modes.search_modes
+    every = damped_spectrum.search_modes
 
     def but_one(stiffness: Stiffness, *others: Any) -> FoundModes:
         found = every(stiffness, *others)
         kept = [mode for mode in found.modes if abs(float(mode.frequency.real.mid()) - 2.5 * pi) > 0.1]
         return replace(found, modes=kept)
 
-    monkeypatch.setattr(complete_modes, "search_modes", but_one)
+    monkeypatch.setattr(damped_spectrum, "search_modes", but_one)
     found = modes(["fixed", {"rod": 1}, HALF], 5)
     assert len(found) == 5
     assert not found.complete

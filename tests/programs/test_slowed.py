@@ -12,7 +12,7 @@ from tests.programs.test_modal_systems import PUSH, SYMMETRIC, both, rounding, v
 from tests.support.drives import exact
 from tests.support.modal import chain
 from wavesym.errors import ToleranceError, UnservedError
-from wavesym.exact.modes.damped_modes import DampedSpectrum
+from wavesym.exact.modes.damped_spectrum import DampedSpectrum
 from wavesym.programs.making import make
 from wavesym.programs.modes import complex_modes
 from wavesym.programs.modes.complex_modes import ComplexModes

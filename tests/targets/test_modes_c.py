@@ -30,10 +30,10 @@ NAME = MODEL.name
 NEWTONS = -1.5  # of a load of 1
 
 
-def written(made, folder):
+def written(made, folder, proved=True):
     """The files of an evaluator, self-test included."""
     model = MODEL.watching([Probe(output.name, "displacement", 1, fmpq(0)) for output in made.outputs])
-    program = replace(made.program(Provenance(model, made.summary)), reference=made.reference(model))
+    program = replace(made.program(Provenance(model, made.summary)), reference=made.reference(model), proved=proved)
     for file, text in files(program, "all").items():
         (folder / file).write_text(text)
     return program
@@ -179,7 +179,7 @@ def test_a_stream_says_what_it_is(tmp_path):
     manifest = json.loads((tmp_path / f"{NAME}.json").read_text())
     assert (manifest["evaluator"], manifest["spacing"], manifest["loads"]) == ("modes", 0.25, ["load0 [N]"])
     assert "proved" not in manifest
-    written(replace(made, proved=False), tmp_path)
+    written(made, tmp_path, proved=False)
     for file in (f"{NAME}.h", f"{NAME}.py"):
         assert "proved" not in (tmp_path / file).read_text().lower()
     assert json.loads((tmp_path / f"{NAME}.json").read_text())["proved"] is False

@@ -18,7 +18,6 @@ from flint import arb
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.numbers.doubles import upper_double
-from wavesym.results.modes import is_damped
 from wavesym.results.presentation import csv_line
 from wavesym.scene import Scene, lower
 from wavesym.scene.paths import leaves
@@ -153,7 +152,7 @@ def _lower_double(value: arb) -> float:
 def _angular(scene: Scene, count: int) -> list[arb]:
     model = lower(scene, in_time=False)
     model.network.refuse_loss()
-    if is_damped(model.network):
+    if model.network.loses:
         raise UnservedError("--range: dashpots make frequencies complex, and these follow no parameter one way")
     per_tau = arb(model.clock.seconds) if model.clock else arb(1)
     return [w / per_tau for w in frequencies(model.network, count)]

@@ -8,7 +8,7 @@ by their absolute values; the zeros of the determinant in a circle are counted.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf, pi, sqrt
 from typing import Any
@@ -18,10 +18,10 @@ from flint import acb, arb, ctx, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact.modes.complete_modes import CompleteModes, CompleteSpectrum
 from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.damped_spectrum import DampedSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.shape import FoundModes, Mode
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
@@ -120,7 +120,11 @@ class Modes:
         about: dict[str, Any] = {"complete": self.complete, "why": self.why, "time_unit": self.time_unit}
         if self.line_shapes:
             about["along"] = [
-                {"line": each.line, "x": each.x.tolist(), "shapes": [self._plain(row) for row in each.displacements]}
+                {
+                    "line": each.line,
+                    "x": each.x.tolist(),
+                    "shapes": [self._plain(row) for row in each.displacements.tolist()],
+                }
                 for each in self.line_shapes
             ]
         return json.dumps({"name": self.name, "modes": self._rows(shapes=shapes), **about}, indent=2) + "\n"
@@ -150,9 +154,9 @@ class Modes:
                 lines.append(csv_line([each.line, x, *numbers]))
         return "".join(lines)
 
-    def _plain(self, row: NDArray[np.complex128]) -> list[Any]:
-        """A row of a shape as JSON has it."""
-        return [q.real if self._is_real else [q.real, q.imag] for q in row.tolist()]
+    def _plain(self, row: Iterable[complex]) -> list[Any]:
+        """Numbers of a shape as JSON has them."""
+        return [q.real if self._is_real else [q.real, q.imag] for q in row]
 
     def text(self, *, shapes: bool = False) -> str:
         """As a table for people."""
@@ -191,26 +195,14 @@ class Modes:
         return all(moved.imag == 0 for mode in self.modes for moved in mode.shape.values())
 
     def _rows(self, *, shapes: bool) -> list[dict[str, Any]]:
-        real = self._is_real
-        return [
-            {
-                "number": mode.number,
-                "omega": mode.omega,
-                "hz": mode.hz,
-                "period": mode.period,
-                "damping": mode.damping,
-                "decay": mode.decay,
-                "radius": mode.radius,
-                "effective_mass": mode.effective_mass,
-                **{f"{key}@{name}": value for name, load in mode.loads.items() for key, value in _numbers(load)},
-                **(
-                    {"shape": {node: q.real if real else [q.real, q.imag] for node, q in mode.shape.items()}}
-                    if shapes
-                    else {}
-                ),
-            }
-            for mode in self.modes
-        ]
+        rows = []
+        for mode in self.modes:
+            row: dict[str, Any] = {**vars(mode)}
+            shape, loads = row.pop("shape"), row.pop("loads")
+            row |= {f"{key}@{name}": value for name, load in loads.items() for key, value in _numbers(load)}
+            row |= {"shape": dict(zip(shape, self._plain(shape.values()), strict=True))} if shapes else {}
+            rows.append(row)
+        return rows
 
 
 def modes(
@@ -240,9 +232,9 @@ def modes(
     if count > _MOST:
         raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
     model.network.refuse_loss()
-    damped = is_damped(model.network)
-    spectrum = CompleteSpectrum(model.network) if damped else Spectrum(model.network)
-    first = _first(spectrum, count if below is None else _FIRST_GUESS)
+    damped = model.network.loses
+    spectrum = DampedSpectrum(model.network) if damped else Spectrum(model.network)
+    first = spectrum.complete(count if below is None else _FIRST_GUESS)
     found = first.modes
     seconds = fmpq(1) if model.clock is None else model.clock.seconds
     per_tau = nearest(seconds)
@@ -254,7 +246,7 @@ def modes(
             if len(found) >= _MOST:
                 raise CostError(f"--below: {below:g} has more modes below it, the limit is {_MOST} (a lower one helps)")
             wanted *= 2
-            first = _first(spectrum, wanted)
+            first = spectrum.complete(wanted)
             found = first.modes
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
     rows = tuple(_row(model, k, mode, seconds) for k, mode in enumerate(found, 1))
@@ -268,13 +260,7 @@ def modes(
     return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, notes)
 
 
-def _first(spectrum: Spectrum | CompleteSpectrum, count: int) -> CompleteModes:
-    if isinstance(spectrum, CompleteSpectrum):
-        return spectrum.first(count)
-    return CompleteModes(spectrum.first(count), inf)
-
-
-def _why(found: CompleteModes, complete: bool, model: Model, per_tau: float) -> str:
+def _why(found: FoundModes, complete: bool, model: Model, per_tau: float) -> str:
     """Whether modes of a chain with dashpots are all there, and why."""
     per = "rad/s" if model.clock else "rad/tau"
     reach = f"none is missed up to {found.reach / per_tau:.6g} {per}"
@@ -308,13 +294,6 @@ def _notes(found: Sequence[Mode]) -> list[str]:
 
 def _mode_numbers(modes: Sequence[int]) -> str:
     return f"mode{'s' * (len(modes) > 1)} {', '.join(map(str, modes))}"
-
-
-def is_damped(network: Network) -> bool:
-    """Whether a dashpot or an absorbing end makes frequencies complex."""
-    return any(point.damping != 0 and point.motion is None for point in network.points) or any(
-        link.damping != 0 and not link.contact for link in network.links
-    )
 
 
 def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:

@@ -14,7 +14,7 @@ from wavesym.fields.numbers import decimal_text
 from wavesym.fields.rounding import DIGITS
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
-from wavesym.results.modes import is_damped, modes
+from wavesym.results.modes import modes
 from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.elastic import Rods
 
@@ -76,7 +76,7 @@ def _exact_delay(rods: Rods) -> str:
 def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
     """The longest periods in s; in words what else is to be said of them, or why they are not known."""
     network = model.network_as_written
-    if is_damped(network):
+    if network.loses:
         return _damped_periods(replace(model, network=network))
     try:
         found = frequencies(network, _PERIODS + _RIGID)

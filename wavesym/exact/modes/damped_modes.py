@@ -6,7 +6,7 @@ others, as zeros of a polynomial are (Aberth, 1973). So none is found twice, als
 one swings no more, and has become two that creep.
 
 Each is polished in complex balls, and proved: a ball that Newton's method (with all slopes that occur in it) maps into
-its inside has one zero. That none is missed is proved where all are counted (complete_modes.py). Programs do not
+its inside has one zero. That none is missed is proved where all are counted (damped_spectrum.py). Programs do not
 count: what all modes together have is known otherwise, and bounds count what is left of it
 (programs/modes/dissipation.py): a mode that was missed makes a bound worse, not wrong.
 """
@@ -14,17 +14,14 @@ count: what all modes together have is known otherwise, and bounds count what is
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from flint import acb, arb, ctx
 
-from wavesym.errors import UnservedError
-from wavesym.exact.modes.cuts import CutNetwork
-from wavesym.exact.modes.equal_branches import take_apart
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import Mode, complex_mode, trial
+from wavesym.exact.modes.shape import FoundModes, Mode, complex_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.exact.modes.turns import absorb, bare_ends
 from wavesym.mechanics.network import Network
@@ -63,51 +60,21 @@ def remove_dashpots(network: Network) -> Network:
     )
 
 
-@dataclass(frozen=True)
-class FoundModes:
-    """Modes by the absolute values of their frequencies.
-
-    `is_open` says whether some that were sought are not proved; of these several near `meeting`, the least such place.
-    """
-
-    modes: list[Mode]
-    is_open: bool
-    meeting: float | None
-
-
-class DampedSpectrum(CutNetwork):
-    """The modes of a network with dashpots that is cut at places (bar, part of it)."""
-
-    def first(self, count: int, again: int = 0) -> list[Mode]:
-        """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
-
-        Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. Equal branches are
-        taken apart (equal_branches.py); UnservedError where other frequencies coincide. `again` says how often they
-        were sought before.
-        """
-        whole = Stiffness(self.cut.network)
-        bits = _BITS + _BITS_A_ROW[-1][0] * len(whole.points)  # of all that is proved
-        with ctx.workprec(bits):
-            parts = take_apart(self.cut.network)
-        found = [search_modes(Stiffness(part.network), count, again) for part in parts]
-        if any(each.is_open for each in found) and self.cut_again():  # all points may be at rest
-            return self.first(count, again)
-        for each in found:
-            if each.meeting is not None:
-                raise UnservedError(
-                    f"system: two frequencies meet near {each.meeting:.6g}, which modes with dashpots cannot "
-                    "tell apart (take pieces or march)"
-                )
-        pairs = [(part, mode) for part, each in zip(parts, found, strict=True) for mode in each.modes]
-        with ctx.workprec(bits):
-            every = [copy for part, mode in pairs for copy in part.modes_of_whole(mode, whole)]
-        return sorted(every, key=lambda mode: abs(complex(mode.frequency)))
+def proof_bits(network: Network) -> int:
+    """Those that modes are proved with at most."""
+    return _BITS + _BITS_A_ROW[-1][0] * len(Stiffness(network).points)
 
 
 def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Complex = _NONE) -> FoundModes:
-    """About the first `count` modes of a network as it is cut, as `DampedSpectrum.first` has them.
+    """About the first `count` modes of a network as it is cut, with real parts of their frequencies of at least 0.
 
-    Of some it is `known` where they are.
+    Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it.
+
+    Args:
+        stiffness: that of the network, without equal branches.
+        count: how many.
+        again: how often they were sought before.
+        known: where some are.
     """
     guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
     new = [w for w in known.tolist() if not np.any(np.abs(guesses - w) < _MEETING * abs(w))]
@@ -122,15 +89,13 @@ def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Comple
         if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1
     ]
     made = distinct_modes([*resting, *(mode for mode in found if mode)])
-    return FoundModes(made, bool(unproved), min(several, default=None))
+    return FoundModes(made, 0.0, min(several, default=None), is_open=bool(unproved))
 
 
 def _undamped_at_rest(stiffness: Stiffness, limit: float) -> list[Mode]:
-    """The modes of which all points but free ends rest, whatever dashpots there are; their numbers are complex, as of
-    others."""
+    """The modes of which all points but free ends rest, whatever dashpots there are."""
     with ctx.workprec(_BITS):
-        modes = resting_modes(stiffness, limit, free_ends=True)
-        return [replace(mode, frequency=acb(mode.frequency), points=[acb(q) for q in mode.points]) for mode in modes]
+        return [mode.to_complex() for mode in resting_modes(stiffness, limit, free_ends=True)]
 
 
 def _leave_out(guesses: Complex, modes: Sequence[Mode]) -> Complex:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import inf
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -11,7 +12,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import Mode, Trial, rigid, rigid_mode, trial
+from wavesym.exact.modes.shape import FoundModes, Mode, Trial, rigid, rigid_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array
@@ -91,6 +92,10 @@ class Spectrum(CutNetwork):
             self._found = []
             return self.first(count)
         return self._found[:count]
+
+    def complete(self, count: int) -> FoundModes:
+        """The same: none of them is missed."""
+        return FoundModes(self.first(count), inf)
 
 
 def undamped_modes(stiffness: Stiffness, count: int, known: int = 0) -> Iterator[Mode]:

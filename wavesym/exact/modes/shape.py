@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -64,6 +64,10 @@ class Mode:
                     pull += moved * (self.frequency * acb(0, link.ratio * link.damping))
         return pull
 
+    def to_complex(self) -> Mode:
+        """The same in complex numbers, as modes with dashpots are."""
+        return replace(self, frequency=acb(self.frequency), points=[acb(q) for q in self.points])
+
     def turn(self, delay: fmpq) -> tuple[Quantity, Quantity]:
         """sin and cos of the frequency times a delay."""
         if delay not in self._turns:
@@ -73,6 +77,26 @@ class Mode:
     @cached_property
     def _turns(self) -> dict[fmpq, tuple[Quantity, Quantity]]:
         return {}
+
+
+@dataclass(frozen=True)
+class FoundModes:
+    """Modes by the absolute values of their frequencies.
+
+    Attributes:
+        modes: those at 0 first, rigid motion before shifts; each as often as its frequency is one.
+        reach: up to which absolute value none is missed.
+        meeting: where two or more frequencies meet that are not told apart, the least such place; None where none are
+            known to.
+        are_roots: whether they are the roots of a polynomial.
+        is_open: whether some that were sought are not proved, and may be where rods are cut once more.
+    """
+
+    modes: list[Mode]
+    reach: float
+    meeting: float | None = None
+    are_roots: bool = False
+    is_open: bool = False
 
 
 def rigid(network: Network) -> tuple[fmpq, ...] | None:

@@ -15,16 +15,16 @@ Of a chain that nothing holds, shapes have no part in the motion without strain,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from flint import arb
 
+from wavesym.exact.modes.response import HarmonicResponse
 from wavesym.exact.modes.shape import rigid
 from wavesym.exact.modes.stiffness import Quantity, Stiffness
-from wavesym.mechanics.network import Bar, End
+from wavesym.mechanics.network import End
 
 Forces = Mapping[int, Quantity]
 """What acts on points."""
@@ -58,13 +58,9 @@ class Shape:
 
 @dataclass(frozen=True)
 class Statics:
-    """The statics of a network whose points are those of a tree, in balls of the precision that is set.
-
-    Or in what `number` makes of exact numbers.
-    """
+    """The statics of a network whose points are those of a tree, in balls of the precision that is set."""
 
     stiffness: Stiffness
-    number: Callable[[Any], Quantity] = arb
 
     def displacement(self, points: Sequence[Quantity], end: End) -> Quantity:
         """How far the end of a bar moves where points move so far."""
@@ -77,33 +73,30 @@ class Statics:
         found = rigid(self.stiffness.network)
         if found is None:
             return None
-        points = [self.number(q) for q in found]
+        points = [arb(q) for q in found]
         scale = self.mass(points) ** -0.5
         return [scale * q for q in points]
 
     @cached_property
-    def _springs(self) -> tuple[list[Quantity], list[Quantity]]:
-        """Pivots and couplings of K where nothing moves: a bar is a spring of its impedance over its delay."""
-        law = self.stiffness.law(self.number)
-        over = [1 / delay for delay in law.delays]
-        diagonal, up = law.assemble(0, over, [-each for each in over])
-        return self.stiffness.pivots(diagonal, up), up
+    def _response(self) -> HarmonicResponse:
+        """Where nothing moves a bar is a spring of its impedance over its delay."""
+        springs = {bar.delay: 1 / arb(bar.delay) for bar in self.stiffness.network.bars}
+        pairs = {delay: (each, each) for delay, each in springs.items()}
+        return HarmonicResponse(self.stiffness, arb, arb(0), pairs, is_free=self.free is not None)
 
     def solve(self, forces: Sequence[Quantity]) -> list[Quantity]:
         """How far the points move under forces on them, those that are not free by nothing.
 
         Where nothing holds the chain the forces are in balance, and its root does not move.
         """
-        pivots, up = self._springs
-        acting = [forces[point] for point in self.stiffness.points]
-        return self.stiffness.point_motions(self.stiffness.substitute(pivots, up, acting, free=self.free is not None))
+        return self._response.move(dict(enumerate(forces)))
 
     def inertia(self, points: Sequence[Quantity]) -> list[Quantity]:
         """The forces on points that accelerate everything as points move, and what is between them linearly."""
         network = self.stiffness.network
         forces = [q * point.mass for q, point in zip(points, network.points, strict=True)]
         for number, bar in enumerate(network.bars):
-            share = self.number(bar.impedance * bar.delay / 6)
+            share = arb(bar.impedance * bar.delay / 6)
             ends = self.displacement(points, End(number, 0)), self.displacement(points, End(number, 1))
             forces[bar.left] += share * bar.ratios[0] * (2 * ends[0] + ends[1])
             forces[bar.right] += share * bar.ratios[1] * (ends[0] + 2 * ends[1])
@@ -112,30 +105,23 @@ class Statics:
     def mass(self, points: Sequence[Quantity], broken: Mapping[End, Quantity] | None = None) -> Quantity:
         """The sum of M q^2, and of the integrals of Z u^2; ends that are `broken` move so much further than points."""
         network = self.stiffness.network
-        total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), self.number(0))
+        total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), arb(0))
         for number, bar in enumerate(network.bars):
             a, b = (
                 self.displacement(points, end) + (broken or {}).get(end, 0) for end in (End(number, 0), End(number, 1))
             )
-            total += self.number(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
+            total += arb(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
         return total
 
     def imposed_shape(self, point: int) -> Shape:
         """The shape that the unit motion of a point imposes whose motion is prescribed."""
-
-        def per_delay(bar: Bar) -> Quantity:
-            return 1 / self.number(bar.delay)
-
-        _, forces = self.stiffness.prescribed_column(point, self.number, per_delay, per_delay)
-        moved = self.solve([forces.get(other, self.number(0)) for other in range(len(self.stiffness.network.points))])
-        moved[point] = self.number(1)
-        return Shape(self, moved)
+        return Shape(self, self._response.prescribe(point, arb(1))[0])
 
     def loaded_shape(self, forces: Forces) -> Shape:
         """The shape under forces on points."""
-        acting = [self.number(0)] * len(self.stiffness.network.points)
+        acting = [arb(0)] * len(self.stiffness.network.points)
         for point, force in forces.items():
-            acting[point] = acting[point] + self.number(force)
+            acting[point] = acting[point] + arb(force)
         if self.free is None:
             return Shape(self, self.solve(acting))
         along = self._rigid_component(acting)
@@ -151,22 +137,22 @@ class Statics:
     def break_mass(self, end: End) -> Quantity:
         """The mass of the shape with a unit break at the end of a bar: the sum of (slope there)^2 / w^4."""
         bar = self.stiffness.network.bars[end.bar]
-        acting = [self.number(0)] * len(self.stiffness.network.points)
-        acting[bar.left] -= self.number(bar.ratios[0] / bar.delay)
-        acting[bar.right] += self.number(bar.ratios[1] / bar.delay)
+        acting = [arb(0)] * len(self.stiffness.network.points)
+        acting[bar.left] -= arb(bar.ratios[0] / bar.delay)
+        acting[bar.right] += arb(bar.ratios[1] / bar.delay)
         moved = self.solve(acting)
-        gap = {end: 1 / self.number(bar.impedance) * (-1 if end.side else 1)}
+        gap = {end: 1 / arb(bar.impedance) * (-1 if end.side else 1)}
         mass = self.mass(moved, gap)
         if self.free is None:
             return mass
         here = self.displacement(self.free, end)  # the same all along the bar
-        part = self._rigid_component(self.inertia(moved)) + here * gap[end] * self.number(bar.impedance * bar.delay / 2)
+        part = self._rigid_component(self.inertia(moved)) + here * gap[end] * arb(bar.impedance * bar.delay / 2)
         return mass - part * part
 
     def _rigid_component(self, forces: Sequence[Quantity]) -> Quantity:
         """What forces do to the motion without strain."""
         assert self.free is not None
-        return sum((force * q for force, q in zip(forces, self.free, strict=True)), self.number(0))
+        return sum((force * q for force, q in zip(forces, self.free, strict=True)), arb(0))
 
     def _remove_rigid_part(self, moved: Sequence[Quantity], bent: Sequence[Quantity]) -> list[Quantity]:
         """A shape without its part in the motion without strain."""
@@ -174,6 +160,6 @@ class Statics:
         part = self._rigid_component(self.inertia(moved))
         for number, bar in enumerate(self.stiffness.network.bars):
             end = End(number, 0)  # a bar that is bent by a constant a is a T^2 (x^2 - x)/2 off the line
-            bend = self.displacement(bent, end) * self.number(bar.impedance * bar.delay**3 / 12)
+            bend = self.displacement(bent, end) * arb(bar.impedance * bar.delay**3 / 12)
             part -= self.displacement(self.free, end) * bend
         return [q - part * r for q, r in zip(moved, self.free, strict=True)]

@@ -16,19 +16,21 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from flint import arb, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.network import Bar, Link, Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 
 # doubles (arrays of them), or balls
 Quantity = Any
+
+_ZERO = fmpq(0)
 
 
 Weights = list[tuple[int, Quantity]]
@@ -87,8 +89,6 @@ class Stiffness:
 
     network: Network
 
-    ZERO: ClassVar[float | fmpq] = fmpq(0)  # of its network's numbers
-
     @cached_property
     def points(self) -> tuple[int, ...]:
         """The point of each row: those that are free to move, tips first, each before its parent."""
@@ -144,30 +144,27 @@ class Stiffness:
         network, rows = self.network, self.rows
         free = [network.points[point] for point in self.points]
         delays, delay_of = self.delays
-        stiffness, coupling_stiffness = [point.stiffness for point in free], list[Quantity]([self.ZERO] * len(free))
-        damping, coupling_damping = [point.damping for point in free], list[Quantity]([self.ZERO] * len(free))
+        stiffness, coupling_stiffness = [point.stiffness for point in free], list[Quantity]([_ZERO] * len(free))
+        damping, coupling_damping = [point.damping for point in free], list[Quantity]([_ZERO] * len(free))
         ends, bars = [dict[int, Quantity]() for _ in free], [dict[int, Quantity]() for _ in free]
         for link in network.links:
-            left, right = rows.get(link.left), rows.get(link.right)
-            if left is not None:
-                stiffness[left] = stiffness[left] + link.ratio**2 * link.stiffness
-                damping[left] = damping[left] + link.ratio**2 * link.damping
-            if right is not None:
-                stiffness[right] = stiffness[right] + link.stiffness
-                damping[right] = damping[right] + link.damping
-                if left is not None:
-                    coupling_stiffness[min(left, right)] = (
-                        coupling_stiffness[min(left, right)] - link.ratio * link.stiffness
-                    )
-                    coupling_damping[min(left, right)] = coupling_damping[min(left, right)] - link.ratio * link.damping
+            pair = rows.get(link.left), rows.get(link.right)
+            for row, ratio in zip(pair, (link.ratio, fmpq(1)), strict=True):
+                if row is not None:
+                    stiffness[row] = stiffness[row] + ratio**2 * link.stiffness
+                    damping[row] = damping[row] + ratio**2 * link.damping
+            if pair[0] is not None and pair[1] is not None:
+                near = min(pair[0], pair[1])
+                coupling_stiffness[near] = coupling_stiffness[near] - link.ratio * link.stiffness
+                coupling_damping[near] = coupling_damping[near] - link.ratio * link.damping
         for bar, delay in zip(network.bars, delay_of, strict=True):
             pair = rows.get(bar.left), rows.get(bar.right)
             for row, ratio in zip(pair, bar.ratios, strict=True):
                 if row is not None:
-                    ends[row][delay] = ends[row].get(delay, self.ZERO) + bar.impedance * ratio**2
-            if None not in pair:
-                row = min(row for row in pair if row is not None)
-                bars[row][delay] = bars[row].get(delay, self.ZERO) + bar.impedance * bar.ratios[0] * bar.ratios[1]
+                    ends[row][delay] = ends[row].get(delay, _ZERO) + bar.impedance * ratio**2
+            if pair[0] is not None and pair[1] is not None:
+                shared = bars[min(pair[0], pair[1])]
+                shared[delay] = shared.get(delay, _ZERO) + bar.impedance * bar.ratios[0] * bar.ratios[1]
         return HarmonicLaw(
             [number(point.mass) for point in free],
             [*map(number, stiffness)],
@@ -179,35 +176,6 @@ class Stiffness:
             [*map(number, delays)],
             [delay_of.count(number) for number in range(len(delays))],
         )
-
-    def prescribed_column(
-        self,
-        point: int,
-        number: Callable[[Any], Quantity],
-        pulled: Callable[[Bar], Quantity],
-        shared: Callable[[Bar], Quantity],
-        rate: Quantity = None,
-    ) -> tuple[Quantity, dict[int, Quantity]]:
-        """What holds a point whose motion is prescribed when it moves by 1, and how that pushes the points beside it.
-
-        `pulled` and `shared` say what a bar does, were its impedance 1, at that end and at its other one.
-        """
-        held, forces = number(self.ZERO), dict[int, Quantity]()
-        parts: list[Bar | Link] = [*self.network.bars, *self.network.links]
-        for part in parts:
-            ends = [(part.left, part.right), (part.right, part.left)]
-            if isinstance(part, Bar):
-                ratios, size = part.ratios, number(part.impedance)
-                near, far = pulled(part) * size, shared(part) * size
-            else:
-                ratios = part.ratio, fmpq(1)
-                near = number(part.stiffness) if rate is None else number(part.stiffness) + rate * number(part.damping)
-                far = near
-            for (here, there), ratio, other in zip(ends, ratios, reversed(ratios), strict=True):
-                if here == point:
-                    held = held + near * number(ratio) ** 2
-                    forces[there] = forces.get(there, number(self.ZERO)) + far * number(ratio) * number(other)
-        return held, forces
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
         """The rows from one row outwards, each with the row that it hangs by and the row that names their coupling."""

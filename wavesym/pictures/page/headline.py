@@ -18,7 +18,7 @@ from wavesym.pictures.line_histories import LineHistories
 from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
-from wavesym.results.modes import ModeRow, is_damped, modes
+from wavesym.results.modes import ModeRow, modes
 from wavesym.results.presentation import group_thousands, number_text, readable_unit
 from wavesym.results.statistics import OutputSummary
 from wavesym.results.summary import Summary, summarise
@@ -102,7 +102,7 @@ def first_modes(scene: Scene) -> list[ModeRow]:
     """
     with suppress(WavesymError):
         model = lower(scene, in_time=False)
-        if not is_damped(model.network):
+        if not model.network.loses:
             found = [row for row in modes(model, _MOST_PERIODS + 1) if row.period]
             moved = accumulate(row.effective_mass or 0.0 for row in found)
             held = any(row.effective_mass is not None for row in found)

@@ -13,13 +13,13 @@ from flint import acb, arb, ctx, fmpq_mat
 from wavesym.errors import UnservedError
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.damped_modes import DampedSpectrum
+from wavesym.exact.modes.damped_spectrum import DampedSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array, Complex
 from wavesym.programs.modes.dissipation import Dissipation, complexes, part
-from wavesym.programs.modes.harmonic_response import LowFrequency, dashpots, series
+from wavesym.programs.modes.harmonic_response import LowFrequency, dashpots, read, series
 from wavesym.programs.modes.loads import Roughness
 from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.modes.projection import Driver, ModalOutput, share
@@ -153,8 +153,8 @@ def project_complex(
     beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
-            read = low.response.read(output, port.point_motions)
-            static = [arb(0)] * (2 - port.order) + [read[k] for k in range(port.order + 1)]
+            reads = read(low.response, output, port.point_motions)
+            static = [arb(0)] * (2 - port.order) + [reads[k] for k in range(port.order + 1)]
             slow[o, j] = [float(each) for each in static]
             parts = zip(losing.rates, values[o], shares[j], strict=True)
             each = [(part(rate, b) * a * rate ** (output.order - 2)).real for rate, a, b in parts]

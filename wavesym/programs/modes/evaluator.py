@@ -40,7 +40,7 @@ _ULPS = 8  # by which a step may differ from the spacing
 class ModesEvaluator(Form):
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
-    A stream takes the loads as `inputs`, in units of their own. What is said of an error is `proved`, or an estimate.
+    A stream takes the loads as `inputs`, in units of their own.
     """
 
     KERNEL = "modes"
@@ -52,7 +52,6 @@ class ModesEvaluator(Form):
     tau_max: float
     inputs: tuple[Input, ...]
     outputs: tuple[ProgramOutput, ...] = ()
-    proved: bool = True
 
     @cached_property
     def scheme(self) -> SteppedModes:
@@ -112,18 +111,16 @@ class ModesEvaluator(Form):
     @property
     def summary(self) -> str:
         """What it is, in a few words."""
-        said = "bound" if self.proved else "estimated error"
-        return f"modes, {len(self.system.frequency)} of them, {said} {self.error_bound:g}"
+        return f"modes, {len(self.system.frequency)} of them, bound {self.error_bound:g}"
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
-        said = "a bound" if self.proved else "an estimated error"
-        return f"modes: {len(self.system.frequency)} modes leave {said} of {self.worst.bound:g} for {self.worst.name}"
+        return f"modes: {len(self.system.frequency)} modes leave a bound of {self.worst.bound:g} for {self.worst.name}"
 
     def program(self, provenance: Provenance, **more: Any) -> Program:
         """Its program, in NumPy and as a stream."""
         sources = tuple(given.label for given in self.inputs)
-        return super().program(provenance, sources=sources, proved=self.proved, step="spacing", **more)
+        return super().program(provenance, sources=sources, step="spacing", **more)
 
     def reference(self, model: Model) -> SteppedValues:
         """For the self-test of a stream: loads up to the largest of the scene's that leap, and what comes of them."""
@@ -180,15 +177,8 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
     """
     made = modal_system(model.to_horizon(real))
     spacing = made.loads.spacing(model.until, model.spacing)
-    evaluator = ModesEvaluator(
-        made.system,
-        made.loads,
-        spacing,
-        real,
-        model.horizon(real),
-        driven_inputs(model, made.sources),
-        proved=made.proved,
-    )
+    inputs = driven_inputs(model, made.sources)
+    evaluator = ModesEvaluator(made.system, made.loads, spacing, real, model.horizon(real), inputs)
     totals = made.errors + evaluator.rounding.errors
     outputs = tuple(
         ProgramOutput(probe.name, relative(error, size), size, incidental=probe.incidental)

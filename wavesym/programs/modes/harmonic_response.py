@@ -1,5 +1,4 @@
-"""How a network moves when what drives it goes as exp(s tau), in any arithmetic; and what loads and outputs are
-then of a chain with dashpots where all is slow: power series in s.
+"""What loads and outputs are of a chain with dashpots where all is slow: power series in s.
 
 A port is what a load acts on, or what an output reads. Under a load on it points move by T(s), a power series, and it
 reads H(s) of this itself. Dashpots are what take energy: each resists a sum of velocities.
@@ -7,73 +6,17 @@ reads H(s) of this itself. Dashpots are what take energy: each resists a sum of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
 
 from flint import arb, arb_series, ctx, fmpq
 
 from wavesym.errors import UnservedError
+from wavesym.exact.modes.response import HarmonicResponse
 from wavesym.exact.modes.stiffness import Quantity, Stiffness
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import Network
 from wavesym.programs.modes.projection import Driver, ModalOutput
-
-
-@dataclass(frozen=True)
-class HarmonicResponse:
-    """`number` takes exact numbers to the arithmetic; of each delay T `bars` has s coth(s T) and s/sinh(s T)."""
-
-    stiffness: Stiffness
-    number: Callable[[fmpq], Quantity]
-    s: Quantity
-    bars: Mapping[fmpq, tuple[Quantity, Quantity]]
-
-    @cached_property
-    def eliminated(self) -> tuple[list[Quantity], list[Quantity]]:
-        """The pivots of the dynamic stiffness, and what couples each row to its parent."""
-        pulled, shared = zip(*(self.bars[delay] for delay in sorted(self.bars)), strict=True) if self.bars else ((), ())
-        law, zero = self.stiffness.law(self.number), self.s * 0
-        diagonal, up = law.assemble(-self.s * self.s, pulled, [-each for each in shared], self.s)
-        coupled = [each + zero for each in up]
-        return self.stiffness.pivots([each + zero for each in diagonal], coupled), coupled
-
-    def move(self, forces: Mapping[int, Quantity]) -> list[Quantity]:
-        """How far points move under forces on them."""
-        zero, points = self.s * 0, self.stiffness.points
-        moved = [zero] * len(self.stiffness.network.points)
-        found = self.stiffness.substitute(*self.eliminated, [forces.get(point, zero) for point in points])
-        for point, q in zip(points, found, strict=True):
-            moved[point] = q
-        return moved
-
-    def prescribe(self, point: int, motion: Quantity) -> tuple[list[Quantity], Quantity]:
-        """How far points move when one is moved so far, and the work of what moves it."""
-        held, forces = self.stiffness.prescribed_column(
-            point, self.number, lambda bar: self.bars[bar.delay][0], lambda bar: self.bars[bar.delay][1], self.s
-        )
-        moved = [q * motion for q in self.move(forces)]
-        free = (p for p in forces if self.stiffness.network.points[p].motion is None)
-        pull = sum((forces[p] * moved[p] for p in free), self.s * 0)
-        moved[point] = motion + self.s * 0
-        return moved, (held * motion - pull) * motion
-
-    def slope(self, moved: Sequence[Quantity], end: End) -> Quantity:
-        """The strain times the bar's speed at its end."""
-        bar = self.stiffness.network.bars[end.bar]
-        ends = [moved[point] * self.number(n) for point, n in zip((bar.left, bar.right), bar.ratios, strict=True)]
-        pulled, shared = self.bars[bar.delay]
-        slope = shared * ends[1 - end.side] - pulled * ends[end.side]
-        return -slope if end.side else slope
-
-    def read(self, output: ModalOutput, moved: Sequence[Quantity]) -> Quantity:
-        """An output of how far points move, but for its derivatives."""
-        if output.slope:
-            weight, end = output.slope
-            return self.slope(moved, end) * self.number(weight)
-        parts = (moved[point] * self.number(weight) for point, weight in output.points.items())
-        return sum(parts, self.s * 0)
-
 
 TERMS = 10
 """Of a power series."""
@@ -124,6 +67,15 @@ class SlowPort:
     impulse_energy: arb
 
 
+def read(response: HarmonicResponse, output: ModalOutput, moved: Sequence[Quantity]) -> Quantity:
+    """An output of how far points move, but for its derivatives."""
+    if output.slope:
+        weight, end = output.slope
+        return response.slope(moved, end) * response.number(weight)
+    parts = (moved[point] * response.number(weight) for point, weight in output.points.items())
+    return sum(parts, response.s * 0)
+
+
 class LowFrequency:
     """A network under loads that change slowly. UnservedError where dashpots alone, or nothing, hold it."""
 
@@ -150,7 +102,7 @@ class LowFrequency:
             forces = {there: shared * (sign * arb(bar.ratios[1 - end.side]))}
             forces[here] = forces.get(here, arb_series([0])) - pulled * (sign * arb(bar.ratios[end.side]))
             moved = self.response.move(forces)
-            reads = self.response.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
+            reads = read(self.response, output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
             return SlowPort(moved, reads, 0, 2, zero)
         free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
         moved = self.response.move({point: one * arb(weight) for point, weight in free.items()})

@@ -54,10 +54,10 @@ class ModalOutput:
             return statics.break_mass(end) * weight * weight
         if self.order == 2 and self.massive:
             network, free = statics.stiffness.network, statics.free
-            total = sum(statics.number(b * b / network.points[point].mass) for point, b in self.points.items())
+            total = sum(arb(b * b / network.points[point].mass) for point, b in self.points.items())
             part = sum(free[point] * b for point, b in self.points.items()) if free else 0
             return total - part * part
-        return statics.number(self.value(statics.loaded_shape(self.points)))
+        return arb(self.value(statics.loaded_shape(self.points)))
 
 
 @dataclass(frozen=True)

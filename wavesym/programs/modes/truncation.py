@@ -14,7 +14,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.damped_modes import DampedSpectrum
+from wavesym.exact.modes.damped_spectrum import DampedSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
@@ -125,10 +125,6 @@ class ModalModel(ABC, Generic[K]):
     def errors(self, known: K, count: int, loads: Sequence[Roughness] | None = None) -> Array:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
 
-    def looseness(self, count: int) -> Array:
-        """About how wrong outputs are, relative to the largest value, because modes are: 0, as these are proved."""
-        return np.zeros(len(self.model.probes))
-
     @abstractmethod
     def system(self, known: K, count: int) -> ModalSystem:
         """The system of the first `count` modes."""
@@ -143,11 +139,10 @@ class ModalModel(ABC, Generic[K]):
         """UnservedError for what no modes serve, CostError for too much."""
         network = self.model.network
         network.refuse_dead_loads()
-        self._refuse_motion()
-        if not self.drivers:
-            raise UnservedError("load: none acts by output.until, and modes need one (write a load (all is at rest))")
         _ = self.loads  # refused before the work
-        self._refuse_many(len(network.bars))
+        rods, most = len(network.bars), isqrt(self.WORK // self.FIRST)
+        if rods > most:
+            raise CostError(f"system: {rods} rods in modes, the limit is {most} (fewer rods or march helps)")
 
     def _refuse_motion(self) -> None:
         network = self.model.network
@@ -156,12 +151,6 @@ class ModalModel(ABC, Generic[K]):
             raise UnservedError(
                 "system: a motion or strain at tau = 0 is not supported by modes (take pieces or march)"
             )
-
-    def _refuse_many(self, rods: int) -> None:
-        most = isqrt(self.WORK // self.FIRST)
-        if rods <= most:
-            return
-        raise CostError(f"system: {rods} rods in modes, the limit is {most} (fewer rods or march helps)")
 
     def output_bounds(self, known: K, count: int) -> Array:
         """What each output reaches, but for what is left out."""
@@ -194,7 +183,6 @@ class ModalModes:
     largest: Array
     frequencies: Array
     damping: Array
-    proved: bool = True
 
     @property
     def count(self) -> int:

@@ -14,11 +14,12 @@ from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
 from wavesym.exact.first_arrivals import light_arrivals
 from wavesym.exact.modes.cuts import cut
+from wavesym.exact.modes.response import HarmonicResponse
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import common_measure
-from wavesym.programs.modes.harmonic_response import HarmonicResponse
+from wavesym.programs.modes.harmonic_response import read
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.projection import Driver, modal_output, places
 
@@ -65,7 +66,7 @@ class _Response:
     def cancels(self, probe: Probe, drivers: Sequence[Driver], histories: Sequence[Sequence[fmpq]]) -> bool:
         """Whether what the loads do to an output adds up to 0."""
         output = modal_output(self._network, self._cut, probe)
-        done = [self._harmonic.read(output, self._motion(driver)) for driver in drivers]
+        done = [read(self._harmonic, output, self._motion(driver)) for driver in drivers]
         zero = _FIELD(0)
         return all(
             sum((_modular(part) * each for part, each in zip(history, done, strict=True)), zero) == 0
