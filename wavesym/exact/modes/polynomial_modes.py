@@ -10,11 +10,11 @@ mirror image are the undamped modes, and their frequencies are real.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from flint import acb, arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from wavesym.exact.modes.shape import Mode, complex_mode
 from wavesym.exact.modes.stiffness import Stiffness
@@ -115,7 +115,7 @@ def _null_space(stiffness: Stiffness, factor: fmpz_poly, s: acb) -> list[list[ac
     for free in (k for k in range(count) if k not in pivots):
         moved = [acb(int(k == free)) for k in range(count)]
         for row, column in zip(rows, pivots, strict=False):
-            moved[column] = -_evaluate(row[free], s)
+            moved[column] = -acb_poly(row[free].coeffs())(s)
         found.append(moved)
     return found
 
@@ -130,11 +130,3 @@ def _dense(stiffness: Stiffness, prime: fmpq_poly) -> list[list[fmpq_poly]]:
             shared = fmpq_poly([law.coupling_stiffness[row], law.coupling_damping[row]]) % prime
             rows[row][parent] = rows[parent][row] = shared
     return rows
-
-
-def _evaluate(polynomial: fmpq_poly, s: acb) -> acb:
-    total = acb(0)
-    coefficients: Sequence[fmpq] = polynomial.coeffs()
-    for each in reversed(coefficients):
-        total = total * s + each
-    return total

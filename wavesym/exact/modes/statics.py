@@ -22,7 +22,7 @@ from functools import cached_property
 from flint import arb
 
 from wavesym.exact.modes.response import HarmonicResponse
-from wavesym.exact.modes.shape import rigid
+from wavesym.exact.modes.shape import rigid, rigid_mode
 from wavesym.exact.modes.stiffness import Quantity, Stiffness
 from wavesym.mechanics.network import End
 
@@ -68,14 +68,10 @@ class Statics:
         return points[bar.right if end.side else bar.left] * bar.ratios[end.side]
 
     @cached_property
-    def free(self) -> list[Quantity] | None:
+    def free(self) -> Sequence[Quantity] | None:
         """The motion without strain, of mass 1; None where something holds the chain."""
         found = rigid(self.stiffness.network)
-        if found is None:
-            return None
-        points = [arb(q) for q in found]
-        scale = self.mass(points) ** -0.5
-        return [scale * q for q in points]
+        return None if found is None else rigid_mode(self.stiffness, found).points
 
     @cached_property
     def _response(self) -> HarmonicResponse:
