@@ -30,22 +30,21 @@ typedef struct {
     real across[PLACES + 1];
 } bonds;
 
-/* Of each bar, were its impedance 1: a spring, what holds its ends, and what couples them. The spring is for what they
- * do against each other, or, where the bar is nearer to moving as much at both ends, for what they do alike: at a
- * resonance the other one would be as large as what holds its ends, and cancel it with all that else holds them. */
+/* Of each bar, were its impedance 1: a spring, and what holds its ends. The spring is for what they do against each other
+ * (1), or, where the bar is nearer to moving as much at both ends, for what they do alike (-1): at a resonance the other
+ * one would be as large as what holds its ends, and cancel it with all that else holds them. */
 typedef struct {
     real spring[BARS + 1];
     real hold[BARS + 1];
-    real couple[BARS + 1];
+    real against[BARS + 1];
 } bar_bonds;
 
 /* By the sine and cosine of half of w times the delay. */
 static void bond_bar(real w, real sine, real cosine, int bar, bar_bonds *of)
 {
-    const int against = fabs(sine) <= fabs(cosine);
-    of->couple[bar] = w / (2 * sine * cosine);
-    of->spring[bar] = against ? of->couple[bar] : -of->couple[bar];
-    of->hold[bar] = against ? -w * sine / cosine : w * cosine / sine;
+    of->against[bar] = fabs(sine) <= fabs(cosine) ? 1 : -1;
+    of->spring[bar] = of->against[bar] * w / (2 * sine * cosine);
+    of->hold[bar] = of->against[bar] > 0 ? -w * sine / cosine : w * cosine / sine;
 }
 
 static void chain_of(const real *value, chain *c)
@@ -65,9 +64,9 @@ static void chain_of(const real *value, chain *c)
     }
 }
 
-/* Join two places by a spring, and by what couples them: k, or -k. A row and its parent are coupled, others are at rest
- * and hold the row. */
-static void join(bonds *b, int left, real left_ratio, int right, real right_ratio, int row, real k, real couple)
+/* Join two places by a spring k for what they do against each other (1) or alike (-1). A row and its parent are coupled,
+ * others are at rest and hold the row. */
+static void join(bonds *b, int left, real left_ratio, int right, real right_ratio, int row, real k, real against)
 {
     const real at_left = left_ratio * left_ratio * k;
     const real at_right = right_ratio * right_ratio * k;
@@ -78,7 +77,7 @@ static void join(bonds *b, int left, real left_ratio, int right, real right_rati
     }
     b->here[row] += row == left ? at_left : at_right;
     b->there[row] += row == left ? at_right : at_left;
-    b->across[row] += left_ratio * right_ratio * couple;
+    b->across[row] += left_ratio * right_ratio * against * k;
 }
 
 /* From w^2 and the bonds of bars. */
@@ -98,11 +97,10 @@ static void assemble(const chain *c, real square, const bar_bonds *bars, bonds *
         const real z = c->impedance[bar];
         b->own[left] += left_ratio * left_ratio * z * bars->hold[bar];
         b->own[right] += right_ratio * right_ratio * z * bars->hold[bar];
-        join(b, left, left_ratio, right, right_ratio, bar_up[bar], z * bars->spring[bar], z * bars->couple[bar]);
+        join(b, left, left_ratio, right, right_ratio, bar_up[bar], z * bars->spring[bar], bars->against[bar]);
     }
     for (int link = 0; link < LINKS; ++link) {
-        const real k = c->link[link];
-        join(b, link_left[link], link_ratio[link], link_right[link], 1, link_up[link], k, k);
+        join(b, link_left[link], link_ratio[link], link_right[link], 1, link_up[link], c->link[link], 1);
     }
 }
 

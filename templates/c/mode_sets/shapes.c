@@ -175,10 +175,8 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     /* an angle is as wrong as its last digit: near a resonance of a bar that counts */
     for (int bar = 0; bar < BARS; ++bar) {
         const real grown = 1 + fabs(a->angle[bar] * a->csc[bar]);
-        const int against = bars.spring[bar] == bars.couple[bar];
         bars.spring[bar] = fabs(bars.spring[bar]) * grown;
         bars.hold[bar] = fabs(bars.hold[bar]) * grown;
-        bars.couple[bar] = against ? bars.spring[bar] : -bars.spring[bar];
     }
     assemble(c, -w * w, &bars, &b);
     found->wrong = rounding * energy(&b, moved);

@@ -42,8 +42,9 @@ static void springs_of(const chain *c, springs *s)
     bar_bonds bars;
     real held[ROWS];
     for (int bar = 0; bar < BARS; ++bar) {
-        bars.spring[bar] = bars.couple[bar] = 1 / c->delay[bar];
+        bars.spring[bar] = 1 / c->delay[bar];
         bars.hold[bar] = 0;
+        bars.against[bar] = 1;
     }
     assemble(c, 0, &bars, &s->bond);
     eliminate(&s->bond, held, s->pivot);
