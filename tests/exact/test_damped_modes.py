@@ -214,8 +214,8 @@ def test_modes_of_many_rows_do_not_wait_for_those_far_away(monkeypatch):
         rounds[-1] += 1
         return pull(*given)
 
-    pull = found._pull
-    monkeypatch.setattr(found, "_pull", counted)
+    pull = found._slope_of_logarithm
+    monkeypatch.setattr(found, "_slope_of_logarithm", counted)
     spectra = []
     for far, bits in ((found._AWAY, found._BITS_A_ROW), (np.inf, found._BITS_A_ROW[-1:])):
         rounds.append(0)

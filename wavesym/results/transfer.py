@@ -10,7 +10,7 @@ so their sum needs no modes. What a prescribed motion imposes is not damped, nor
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,8 +21,8 @@ from flint import acb, arb, fmpq
 from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.branches import BranchTree
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.exact.modes.harmonic import Amplitudes, Quantity, ball_frequency
-from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, polynomial_frequency
+from wavesym.exact.modes.harmonic import Amplitudes, Frequency, Quantity, ball_frequency
+from wavesym.exact.modes.lowest_terms import LowestTerms, polynomial_frequency
 from wavesym.exact.modes.shape import rigid, rigid_mass
 from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
 from wavesym.mechanics.model import Model
@@ -125,15 +125,11 @@ class Transfer:
         Returns:
             One for each output, in its unit per unit of the load; not finite where w may be a natural frequency.
         """
-        rate = w * _I
         total: list[Quantity] = [acb(0) for _ in self.model.probes]
         for point, coefficients in self.load.drives:
-            motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
-            for k, (probe, moved) in enumerate(
-                zip(self.model.probes, self._undifferentiated_outputs(point, w), strict=True)
-            ):
-                order = ORDERS.get(probe.quantity, 0) - motion
-                total[k] = total[k] + laplace(coefficients, rate, order) * moved
+            outputs = zip(self.model.probes, self._undifferentiated_outputs(point, w), strict=True)
+            for k, (probe, moved) in enumerate(outputs):
+                total[k] = total[k] + laplace(coefficients, w * _I, self._order(point, probe)) * moved
         return total
 
     def parts(self, w: Quantity) -> tuple[list[Quantity], Quantity] | None:
@@ -143,14 +139,23 @@ class Transfer:
         """
         if len(self.load.drives) != 1 or self._rayleigh is not None:
             return None
-        ((point, coefficients),) = self.load.drives
-        amplitudes = Amplitudes(self._trees[point], ball_frequency(w), undivided=True)
-        motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
-        made = []
-        for probe in self.model.probes:
-            driven = laplace(coefficients, w * _I, ORDERS.get(probe.quantity, 0) - motion)
-            made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
-        return made, amplitudes.divisor
+        return self._fractions(self.model.probes, ball_frequency(w))
+
+    def _fractions(self, probes: Sequence[Probe], w: Frequency) -> tuple[list[Quantity], Quantity]:
+        """Some outputs as numerators over one divisor, at a frequency in any arithmetic."""
+        totals, divisor = [w.number(0)] * len(probes), w.number(1)
+        for point, coefficients in self.load.drives:
+            amplitudes = Amplitudes(self._trees[point], w, undivided=True)
+            for k, probe in enumerate(probes):
+                acting = laplace(coefficients, w.rate, self._order(point, probe))
+                moved = acting * output_amplitude(self.model.network, probe, amplitudes)
+                totals[k] = totals[k] * amplitudes.divisor + moved * divisor
+            divisor = divisor * amplitudes.divisor
+        return totals, divisor
+
+    def _order(self, point: int, probe: Probe) -> int:
+        """How often an output is differentiated in time, once more than what drives a point."""
+        return ORDERS.get(probe.quantity, 0) - ORDERS.get(self.model.network.points[point].motion or "", 0)
 
     def has_pole(self, k: int, low: arb, high: arb) -> bool:
         """Whether output k is proved to have a pole between two frequencies.
@@ -184,14 +189,8 @@ class Transfer:
         steps = sum(bar.delay / measure for bar in network.bars)
         if (1 + 2 * steps) * (2 * len(network.points) + len(network.bars)) > _MOST_TERMS:
             return None
-        w, total, divisor = polynomial_frequency(measure), Laurent.constant(0), Laurent.constant(1)
-        for point, coefficients in self.load.drives:
-            amplitudes = Amplitudes(self._trees[point], w, undivided=True)
-            order = ORDERS.get(probe.quantity, 0) - ORDERS.get(network.points[point].motion or "", 0)
-            moved = output_amplitude(network, probe, amplitudes) * laplace(coefficients, w.rate, order)
-            total = total * amplitudes.divisor + moved * divisor
-            divisor = divisor * amplitudes.divisor
-        return LowestTerms(total, divisor, measure)
+        (numerator,), divisor = self._fractions([probe], polynomial_frequency(measure))
+        return LowestTerms(numerator, divisor, measure)
 
     @cached_property
     def imposed_outputs(self) -> frozenset[int]:

@@ -81,7 +81,7 @@ def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Comple
     guesses = np.concatenate([guesses, new])
     resting = _undamped_at_rest(stiffness, float(np.abs(guesses).max(initial=0.0)) * (1 + _MEETING))
     guesses = _leave_out(guesses, resting)
-    found = _all_proved(stiffness, guesses) if stiffness.points else [None]
+    found = _prove_modes(stiffness, guesses) if stiffness.points else [None]
     unproved = [k for k, mode in enumerate(found) if mode is None]
     several = [
         float(abs(guesses[k]))
@@ -107,7 +107,7 @@ def _leave_out(guesses: Complex, modes: Sequence[Mode]) -> Complex:
     return guesses
 
 
-def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
+def _prove_modes(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
     near, rows = guesses * (1 + _OFF), len(stiffness.points)
     roots = stiffness.softest_rows(near, 1j * near).tolist()
     found: list[Mode | None] = [None] * len(guesses)
@@ -123,21 +123,21 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
     """The first frequencies in doubles, those with a real part of at least 0; from more places `again` and again."""
     stiffness = Stiffness(absorb(stiffness.network))
     if not stiffness.network.bars:
-        return _of_matrix(stiffness)[:count]
+        return _eigenvalues(stiffness)[:count]
     many = (int(_MORE * count) + min(len(stiffness.network.bars), _BARS) + 4) << again
     start = bisect_frequencies(Stiffness(remove_dashpots(stiffness.network)), many)
     draw = np.random.default_rng(again)  # nothing is to stay symmetric by chance
     apart = np.pi / float(stiffness.delay)
     start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
     creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS << again) * 1j + 1e-3)
-    fading = _of_fading_rods(stiffness.network, many)
+    fading = _estimate_fading(stiffness.network, many)
     w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping, fading, -fading.conjugate()])
     moving, resting = np.arange(len(w)), _RESTING * np.pi / float(stiffness.delay)
     for turn in range(_ROUNDS):
         apart = w[moving, None] - w
         apart[np.arange(len(moving)), moving] = np.inf
         with np.errstate(all="ignore"):
-            step = 1 / (_pull(stiffness, w[moving]) - (1 / apart).sum(axis=1))
+            step = 1 / (_slope_of_logarithm(stiffness, w[moving]) - (1 / apart).sum(axis=1))
         step = np.where(np.isfinite(step), step, 0.1 * draw.normal(size=len(step)))
         size = np.abs(step)
         step *= np.minimum(1.0, 2.0 / float(stiffness.delay) / np.maximum(size, 1e-300))
@@ -153,7 +153,7 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
     return np.asarray(found)
 
 
-def _of_fading_rods(network: Network, many: int) -> Complex:
+def _estimate_fading(network: Network, many: int) -> Complex:
     """Where waves would swing in a rod that ends in nearly as large a dashpot as its impedance: so far from the others
     that no search comes there from them.
 
@@ -169,7 +169,7 @@ def _of_fading_rods(network: Network, many: int) -> Complex:
     return np.concatenate(found)
 
 
-def _of_matrix(stiffness: Stiffness) -> Complex:
+def _eigenvalues(stiffness: Stiffness) -> Complex:
     """All of them without bars: eigenvalues of x' = A x, x the places of all points and the velocities of masses."""
     law, size = stiffness.doubles, len(stiffness.points)
     k, c = np.diag(law.stiffness), np.diag(law.damping)
@@ -192,7 +192,7 @@ def _of_matrix(stiffness: Stiffness) -> Complex:
     return np.asarray(w[np.argsort(np.abs(w), kind="stable")])
 
 
-def _pull(stiffness: Stiffness, w: Complex) -> Complex:
+def _slope_of_logarithm(stiffness: Stiffness, w: Complex) -> Complex:
     """The slope of the logarithm of det K times the sines of the bars over w."""
     law = stiffness.doubles
     angles = [w * delay for delay in law.delays]

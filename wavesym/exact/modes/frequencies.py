@@ -12,7 +12,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import FoundModes, Mode, Trial, rigid, rigid_mode, trial
+from wavesym.exact.modes.shape import FoundModes, Mode, rigid, rigid_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array
@@ -159,19 +159,21 @@ def _prove_modes(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, r
     """The n-th mode, in which row `root` moves much, and those that no bits tell from it; none where more bits may."""
     with ctx.workprec(bits):
         if bits > 2 * WIDE:
-            for near in _nearer(stiffness, law, n, guess, root):
-                if (made := prove_cluster(stiffness, law, n, near)) and all(map(_sharp, made)):
+            for near in _places_of_cluster(stiffness, law, n, guess, root):
+                if (made := prove_cluster(stiffness, law, n, near)) and all(map(_is_sharp, made)):
                     return made
         w = _refine_by_newton(stiffness, law, n, guess, root, bits)
         if w is None:
             w = _refine_by_counts(stiffness, law, n, guess, bits // 3)
-            if w is None or not _is(stiffness, law, n, w):
+            if w is None or not _is_nth_alone(stiffness, law, n, w):
                 return []
-        mode = Mode(stiffness, w, _normal(stiffness, trial(stiffness, law, w, root)))
-    return [mode] if _sharp(mode) else []
+        found = trial(stiffness, law, w, root)
+        scale = found.mass.rsqrt()
+        mode = Mode(stiffness, w, stiffness.point_motions([scale * row for row in found.rows]))
+    return [mode] if _is_sharp(mode) else []
 
 
-def _nearer(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int) -> Iterator[arb]:
+def _places_of_cluster(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int) -> Iterator[arb]:
     """Where the n-th frequency and others may be that no bits tell from it."""
     if (w := common_frequency(stiffness, law, arb(guess), root)) is not None:
         yield w
@@ -179,7 +181,7 @@ def _nearer(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: 
         yield found.mid()
 
 
-def _sharp(mode: Mode) -> bool:
+def _is_sharp(mode: Mode) -> bool:
     return all(q.rad() < _SHARP for q in mode.points)
 
 
@@ -194,12 +196,12 @@ def _refine_by_newton(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: flo
             return None
         moved, w = abs(better - w), better
         ball = arb(w, (w * small).upper())
-        if moved < near * w and _is(stiffness, law, n, ball):
+        if moved < near * w and _is_nth_alone(stiffness, law, n, ball):
             return ball
     return None
 
 
-def _is(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
+def _is_nth_alone(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
     """Whether the n-th frequency, and no other, is in a ball."""
     return stiffness.proved_count(law, w.lower()) == n - 1 and stiffness.proved_count(law, w.upper()) == n
 
@@ -224,9 +226,3 @@ def _refine_by_counts(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: flo
             return None
         low, high = (middle, high) if count < n else (low, middle)
     return low.union(high)
-
-
-def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
-    """The points of a shape, of mass 1."""
-    scale = found.mass.rsqrt()
-    return stiffness.point_motions([row * scale for row in found.rows])

@@ -30,11 +30,6 @@ class Laurent:
     def __init__(self, polynomial: fmpq_mpoly, over: tuple[int, int] = (0, 0)) -> None:
         self.polynomial, self.over = polynomial, over
 
-    @classmethod
-    def constant(cls, number: int) -> Laurent:
-        """A number."""
-        return cls(_RING.constant(number))
-
     def __add__(self, other: Any) -> Laurent:
         other = _laurent(other)
         most = max(self.over[0], other.over[0]), max(self.over[1], other.over[1])
