@@ -85,7 +85,7 @@ static inexact share_of(const chain *c, const angles *a, real w, int load, const
         pull.value += left + right;
         pull.lost += rounding * (fabs(left) + fabs(right));
     }
-    pull.value *= -gain / (w * w);
+    pull.value = -pull.value * gain / (w * w);
     pull.lost *= fabs(gain) / (w * w);
     return pull;
 }

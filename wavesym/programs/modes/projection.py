@@ -235,7 +235,7 @@ class ExactProjection:
             for driver, (imposed, static) in zip(self.drivers, self._shapes, strict=True)
         ]
 
-    def rounded(self) -> Projection:
+    def to_doubles(self) -> Projection:
         """In doubles."""
         count = len(self.modes)
         with ctx.workprec(_BITS):

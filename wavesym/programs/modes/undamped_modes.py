@@ -162,7 +162,7 @@ class UndampedModes(ModalModel[Projection]):
                     f"output.acceleration: {probe.name}: modes support no place without mass under a force (write "
                     "one with mass, or a motion of the ground in place of the force, or take pieces or `run`)"
                 )
-        return ExactProjection(found, self.outputs, self.drivers).rounded()
+        return ExactProjection(found, self.outputs, self.drivers).to_doubles()
 
     def rule(self, known: Projection) -> DampingRatios:
         """The damping of all modes."""
