@@ -15,8 +15,9 @@ from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact.contacts import cost, schedule
+from wavesym.exact.contacts.course import UndecidedError
 from wavesym.exact.contacts.events import contact_ends
-from wavesym.exact.contacts.search import Search, UndecidedError
+from wavesym.exact.contacts.search import Search
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower

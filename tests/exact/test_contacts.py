@@ -18,10 +18,10 @@ from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts import cost, guards
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.cluster import Cluster
+from wavesym.exact.contacts.course import Course
 from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.schedule import GrazingError
-from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.reference import Reference
 from wavesym.pictures.field import Field
@@ -153,13 +153,13 @@ def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
 
 
 def test_an_event_that_is_late_is_seen(monkeypatch):
-    end = Search._end
+    end = Course._branch_end
 
     def late(*arguments):
         found = end(*arguments)
         return found and BranchEnd(found.length + fmpq(1, 1000), found.spread)
 
-    monkeypatch.setattr(Search, "_end", late)
+    monkeypatch.setattr(Course, "_branch_end", late)
     assert differs()
 
 

@@ -19,7 +19,7 @@ from tests.support.judging import BITS, CLOSE, wrong_values
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts import search
+from wavesym.exact.contacts import course
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.scene import Scene, lower
@@ -270,7 +270,7 @@ def test_springs_at_their_limits_as_a_load_turns_do_not_change_each_other_for_ev
 
 def test_what_changes_its_branch_for_ever_is_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """No scene is known that does: here the first change is taken for the last of many."""
-    monkeypatch.setattr(search, "CHATTER", 1)
+    monkeypatch.setattr(course, "CHATTER", 1)
     parts = [{"mass": 1, "velocity": 1, "name": "a"}, {"spring": 4, "only": "push", "gap": "1/8"}, "fixed"]
     output = {"until": "1/2", "velocity": ["a"]}
     model = lower(Scene(name="often", system={"type": "chain", "parts": parts}, output=output))

@@ -11,8 +11,8 @@ from flint import arb, ctx, fmpq, fmpq_poly
 from tests.exact.test_contact_truth import wrong
 from tests.support.touching import FIXED, body, contact, line, q, rod, seen, told
 from wavesym.errors import CostError
+from wavesym.exact.contacts.course import Course
 from wavesym.exact.contacts.events import events
-from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import ORDER, Onset, combine
 from wavesym.exact.joints.exact_motion import onsets
 from wavesym.exact.joints.joint_law import JointLaw
@@ -172,6 +172,6 @@ def test_light_bodies_are_moved_as_far_as_a_series_bears():
 
 
 def test_what_moves_too_often_is_refused_at_once(monkeypatch):
-    monkeypatch.setattr(Search, "_advance", None)
+    monkeypatch.setattr(Course, "advance", None)
     with pytest.raises(CostError, match="waves cross the shortest rod in tau = 1e-06"):
         events(line([rod("1/1000000", velocity=1), contact("1/3"), rod()], 3))

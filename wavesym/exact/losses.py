@@ -13,7 +13,6 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from wavesym.exact.contacts.events import contact_schedule
-from wavesym.exact.contacts.joint_stretch import sliding_sign
 from wavesym.exact.contacts.touching_waves import Stage
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Balls
@@ -125,7 +124,7 @@ def _engaged_square(number: int, stages: Sequence[Stage], until: fmpq, rate: _Ra
     """The integral of the square of a rate while a spring acts, which it may also do while it idles `brief`ly."""
     ends, total = [*(stage.start for stage in stages), until], arb(0)
     for stage, (low, high) in zip(stages, pairwise(ends), strict=True):
-        if number in stage.closed_links and low < high:
+        if number in stage.branches.closed and low < high:
             total += rate.square(low, high)
         elif low < high <= low + brief:
             total += rate.square(low, high).union(arb(0))
@@ -136,7 +135,7 @@ def _slides(number: int, stages: Sequence[Stage], until: fmpq) -> list[tuple[int
     """Which way a link slides or yields, from when to when."""
     ends = [*(stage.start for stage in stages), until]
     stretches = zip(stages, pairwise(ends), strict=True)
-    return [(sign, low, high) for stage, (low, high) in stretches if (sign := sliding_sign(number, stage.sliding))]
+    return [(sign, low, high) for stage, (low, high) in stretches if (sign := stage.branches.sliding.get(number, 0))]
 
 
 def _bears_nothing(link: Link, sign: int) -> bool:

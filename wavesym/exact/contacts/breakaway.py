@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 
 from flint import arb, fmpq
 
-from wavesym.exact.contacts.branches import Branch, Corner
+from wavesym.exact.contacts.branches import Branch
+from wavesym.exact.contacts.corner import Corner
 from wavesym.exact.contacts.crossing import certain_rise
 from wavesym.exact.contacts.guards import (
     BranchEnd,
@@ -25,7 +26,7 @@ from wavesym.exact.contacts.guards import (
     lasts_until,
     value_range,
 )
-from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
+from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
 
 _STUCK = frozenset({0})
@@ -102,25 +103,25 @@ class Breakaway(Corner):
         """Whether N is within its limits, or it certainly slides, just after the start; not while it is unclear."""
         if self.is_unclear:
             return False
-        if self.link in moved.closed_links:
+        if self.link in moved.branches.closed:
             margins = self._margins(moved)
             self._rest = _Rest(margins, moved.length)
             falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in margins.items()}
             self._breaks = next((way for way, fall in falls.items() if begins_to_grow(fall)), 0)
             return all(map(begins_bearable, margins.values()))
-        sign = sliding_sign(self.link, moved.sliding)
+        sign = moved.branches.sliding.get(self.link, 0)
         if self.closed:
             return sign == self._breaks
         return bool(sign * self.rate > 0) or begins_to_grow(self._thrust(moved, sign))
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """Until when N is certainly within its limits, or it certainly goes the way it slides."""
-        if self.link in moved.closed_links:
+        if self.link in moved.branches.closed:
             self._rest = _Rest(self._margins(moved), moved.length)
             margins = self._rest.margins.values()
             ends = [lasts_until(margin, low, moved.length, resolution) for margin in margins]
             return min((end for end in ends if end is not None), key=lambda end: end.length, default=None)
-        sign = sliding_sign(self.link, moved.sliding)
+        sign = moved.branches.sliding.get(self.link, 0)
         forward = add_terms([(fmpq(sign), moved.rates[self.link])])
         if low == 0 and not sign * self.rate > 0:  # it has just broken away, and gets faster until that is seen
             risen = certain_rise(forward, moved.length, resolution)
@@ -131,9 +132,9 @@ class Breakaway(Corner):
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether it is on its branch on all of a short stretch."""
-        if self.link in moved.closed_links:
+        if self.link in moved.branches.closed:
             return all(is_not_negative(margin, length) for margin in self._margins(moved).values())
-        sign = sliding_sign(self.link, moved.sliding)
+        sign = moved.branches.sliding.get(self.link, 0)
         forward = add_terms([(fmpq(sign), moved.rates[self.link])])
         return value_range(forward, length) > 0 or value_range(self._thrust(moved, sign), length) > 0
 
@@ -141,14 +142,15 @@ class Breakaway(Corner):
         """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
         if self._rest is not None:
             self._rest.time += length
-            if not moved.closed_links | moved.vague <= {self.link} or moved.sliding:  # other corners, or it slides
+            others = (moved.branches.closed | moved.branches.vague) - {self.link}
+            if others or moved.branches.sliding:
                 self._rest = None
-        if self.link in moved.closed_links:
+        if self.link in moved.branches.closed:
             self.rate = arb(0)
             return
         rate = moved.rates[self.link]
         after = rate.evaluate(length) if rate.exact is None else arb(rate.exact(length))
-        if self.link in moved.vague:
+        if self.link in moved.branches.vague:
             self.possible = self._reachable_branches(moved.pushes[self.link], length, after)
         elif after.is_zero():
             self.possible = _STUCK
@@ -161,7 +163,7 @@ class Breakaway(Corner):
 
     def take(self, moved: JointStretch) -> None:
         """Stick, or slide one way."""
-        closed, sign = self.link in moved.closed_links, sliding_sign(self.link, moved.sliding)
+        closed, sign = self.link in moved.branches.closed, moved.branches.sliding.get(self.link, 0)
         self.possible, self._decision = frozenset({sign}), Branch(closed, sign)
 
     def _reachable_branches(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:

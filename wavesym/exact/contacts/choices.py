@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from flint import arb, fmpq
 
-from wavesym.exact.contacts.cluster import Closed
+from wavesym.exact.contacts.branches import Closed
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms
 from wavesym.exact.joints.joint_law import JointLaw
 

@@ -13,14 +13,9 @@ from itertools import chain, combinations
 from flint import fmpq
 
 from wavesym.errors import WavesymError
+from wavesym.exact.contacts.branches import Closed
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.relaxation import Relaxation
-
-Closed = frozenset[int]
-"""Contacts, by the numbers of their links."""
-
-Sliding = frozenset[tuple[int, int]]
-"""What slides: the number of its link, and the sign of the velocity of its right side less that of its left one."""
 
 
 @dataclass(frozen=True)

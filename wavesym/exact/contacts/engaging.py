@@ -72,7 +72,7 @@ class Engaging(OneSided):
         side = self._side(moved)
         if side == 0 and self._guard(moved).is_zero:
             return True
-        return (side > 0) == (self.link in moved.closed_links)
+        return (side > 0) == (self.link in moved.branches.closed)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long it certainly does what it does; in doubt, until it should no longer be."""
@@ -106,7 +106,7 @@ class Engaging(OneSided):
             sign = sign_after(guard.exact, fmpq(0))
         elif guard.onset is not None:
             sign = guard.onset.sign()
-        return sign if self.link in moved.closed_links else -sign
+        return sign if self.link in moved.branches.closed else -sign
 
     def _is_in_doubt(self, moved: JointStretch) -> bool:
         return self._side(moved) == 0 and not self._guard(moved).is_zero

@@ -14,8 +14,8 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 if TYPE_CHECKING:
+    from wavesym.exact.contacts.branches import Change
     from wavesym.exact.contacts.schedule import Schedule
-    from wavesym.exact.contacts.search import Change
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,7 @@ class FrictionStops:
             touch = self._touches[n]
             if touch.friction == 0 or touch.breakaway != 0 or not set(touch.sides).intersection(cluster.stuck_points):
                 continue
-            if result.vague:
+            if result.branches.vague:
                 force = result.pushes[n].evaluate_on(arb(0).union(arb(result.length)))
                 impulse = (abs(force) - arb(touch.friction)).upper() * arb(result.length)
             else:

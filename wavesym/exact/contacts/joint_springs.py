@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding
-from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
+from wavesym.exact.contacts.branches import Branches, Closed
+from wavesym.exact.contacts.cluster import Cluster
+from wavesym.exact.contacts.joint_stretch import JointStretch, PointState
 from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms
 from wavesym.exact.joints.joint_motion import JointMotion
@@ -46,17 +47,11 @@ class JointSprings:
         """Of what is closed, springs."""
         return closed.intersection(self.of_link)
 
-    def add_pulls(
-        self,
-        forces: list[Terms],
-        closed: Closed,
-        sliding: Sliding,
-        points: Mapping[int, PointState],
-    ) -> None:
+    def add_pulls(self, forces: list[Terms], branches: Branches, points: Mapping[int, PointState]) -> None:
         """Add to forces on points what springs pull, besides what displacements of points make of it."""
         for n, spring in self.of_link.items():
-            sign = sliding_sign(n, sliding)
-            if n in closed:
+            closed, sign = branches.of_link(n)
+            if closed:
                 constant = spring.stiffness * (self._begin(n, points).shift_known - spring.rest)
             else:
                 constant = spring.pull(sign) if sign else fmpq(0)
@@ -92,9 +87,9 @@ class JointSprings:
     def strain_others(self, result: JointStretch) -> None:
         """How those that do not act get longer, as the velocities of all points are known."""
         for n, spring in self.of_link.items():
-            if n not in result.closed_links:
+            if n not in result.branches.closed:
                 rate = spring.rate(result.velocities)
-                sign, state = sliding_sign(n, result.sliding), self._state[n]
+                sign, state = result.branches.sliding.get(n, 0), self._state[n]
                 moving = idle_motion(spring, state, rate, result.length)
                 if sign:
                     moving = yielding_motion(spring, state, sign, rate, result.length)
@@ -124,7 +119,7 @@ class JointSprings:
         for n, rate in rates.items():
             spring, state = self.of_link[n], self._state[n]
             moving = idle_motion(spring, state, rate, moved.length)
-            if n in moved.closed_links:
+            if n in moved.branches.closed:
                 moving = acting_motion(spring, state.grow(rate, moved.length))
             moved.spring_motions[n] = moving
             moved.springs[n] = replace(moving.at_end(moved.length), shift=moved.springs[n].shift)
@@ -150,7 +145,7 @@ class JointSprings:
         for n, spring in self.of_link.items():
             moving = moved.spring_motions[n]
             excess = moving.excess(moved.length)
-            if sliding_sign(n, moved.sliding):
+            if moved.branches.sliding.get(n, 0):
                 excess = excess * arb(moved.length) + moving.stretch.error
             found[n] = (arb(spring.stiffness) * excess).upper()
         return found

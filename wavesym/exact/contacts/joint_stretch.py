@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from flint import arb, fmpq
 
-from wavesym.exact.contacts.cluster import Closed, Sliding
+from wavesym.exact.contacts.branches import Branches
 from wavesym.exact.contacts.springs import SpringMotion, SpringState
 from wavesym.exact.joints.enclosure import Enclosure, Terms
 
@@ -48,22 +48,20 @@ class PointState:
 class JointStretch:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
-    `closed_links` are also the springs with a corner that act or hold, `spring_motions` how they move, `springs` how
-    they are at the end. `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`,
-    their ranges under every choice of closed contacts. `bare` are the ends beside contacts on which nothing acts,
-    `exact_contacts` the contacts whose two sides begin in a state that is known exactly. Its series, where it is one,
-    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away. `rests`
-    is when friction of masses on the ground certainly has stopped them, if it holds them from then on; what it bears
-    may be beyond its limit in `excesses`. `stops` are masses that it stops on the ground, and which way they may be
-    moving yet, unless it may be beyond. Where springs have dashpots that act with them, `acting` is what acts on points
-    and is known, `elastic` what springs there pull back, and `doubts` are those that may be on their other branch.
+    `spring_motions` are how springs with a corner move, `springs` how they are at the end. `rates` and `pushes` are
+    those of open and of closed contacts; while contacts are vague, their ranges under every choice of closed contacts.
+    `bare` are the ends beside contacts on which nothing acts, `exact_contacts` the contacts whose two sides begin in a
+    state that is known exactly. Its series, where it is one, bears exp(`swing` length); it is `fleeting` where what
+    decays fast keeps it short, until that has died away. `rests` is when friction of masses on the ground certainly has
+    stopped them, if it holds them from then on; what it bears may be beyond its limit in `excesses`. `stops` are masses
+    that it stops on the ground, and which way they may be moving yet, unless it may be beyond. Where springs have
+    dashpots that act with them, `acting` is what acts on points and is known, `elastic` what springs there pull back,
+    and `doubts` are those that may be on their other branch.
     """
 
     length: fmpq
-    closed_links: Closed
-    vague: Closed
-    sliding: Sliding
-    velocities: dict[int, Terms]
+    branches: Branches
+    velocities: dict[int, Terms] = field(default_factory=dict)
     sends: dict[int, Enclosure] = field(default_factory=dict)
     state: dict[int, PointState] = field(default_factory=dict)
     rates: dict[int, Enclosure] = field(default_factory=dict)
@@ -88,8 +86,3 @@ class SwingError(Exception):
     def __init__(self, longest: fmpq) -> None:
         super().__init__()
         self.longest = longest
-
-
-def sliding_sign(link: int, sliding: Sliding) -> int:
-    """Which way a link slides, or yields; 0 where it does not."""
-    return next((sign for n, sign in sliding if n == link), 0)

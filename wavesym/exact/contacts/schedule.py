@@ -10,7 +10,9 @@ from typing import TypeVar
 from flint import ctx, fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.search import CHATTER, Change, Search, UndecidedError, lasting
+from wavesym.exact.contacts.branches import Change, lasting
+from wavesym.exact.contacts.course import CHATTER, UndecidedError
+from wavesym.exact.contacts.search import Search
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replay
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network

@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.branches import Branch, Corner
+from wavesym.exact.contacts.branches import Branch
+from wavesym.exact.contacts.corner import Corner
 from wavesym.exact.contacts.crossing import TINY, certain_fall, certain_rise, sign_after
 from wavesym.exact.contacts.guards import BranchEnd
-from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
+from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosure import Enclosure
 
@@ -79,7 +80,7 @@ class _SpringCorner(Corner):
 
     def take(self, moved: JointStretch) -> None:
         """Be on the branch that a stretch begins with."""
-        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed_links
+        self.sign, self.closed = moved.branches.sliding.get(self.link, 0), self.link in moved.branches.closed
 
 
 @dataclass
@@ -111,7 +112,7 @@ class OneSided(_SpringCorner):
     def begins(self, moved: JointStretch) -> bool:
         """Whether its guard does not become negative just after the start; where nothing tells, it idles."""
         if self._is_in_doubt(moved):
-            return self.link not in moved.closed_links
+            return self.link not in moved.branches.closed
         return _begins(self._guard(moved), moved.length)
 
     def take(self, moved: JointStretch) -> None:
@@ -158,7 +159,7 @@ class Yielding(_SpringCorner):
     def begins(self, moved: JointStretch) -> bool:
         """Whether it is within its limits, or goes on the way that it yields, just after the start."""
         guards = moved.spring_motions[self.link].guards
-        if self.link not in moved.closed_links:
+        if self.link not in moved.branches.closed:
             return leaning(guards[0], moved.length) > 0
         return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1, _TURNED) > 0 for guard in guards)
 

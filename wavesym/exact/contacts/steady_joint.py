@@ -15,12 +15,13 @@ from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
+from wavesym.exact.contacts.branches import Branches, Closed
+from wavesym.exact.contacts.cluster import Cluster, Touch, connected_sets
 from wavesym.exact.contacts.cluster_states import ClusterStates
 from wavesym.exact.contacts.friction_stops import FrictionStops
 from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import Displacements, JointSprings
-from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms, with_bounds
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
@@ -116,15 +117,11 @@ class SteadyJoint(ABC):
         arriving: Sequence[Enclosure],
         start: fmpq,
         length: fmpq,
-        closed: Closed,
-        vague: Closed = frozenset(),
-        sliding: Sliding = frozenset(),
+        branches: Branches,
         relaxing: bool | None = None,
         trial: bool = False,
     ) -> JointStretch:
-        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
-
-        What rubs is closed where it sticks, else one of those that are `sliding`.
+        """Its motion on a stretch on which its corners are on these branches.
 
         Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
         a stretch is decided already (`relaxing` None), or it is seen that this is lost among rounding errors:
@@ -132,10 +129,10 @@ class SteadyJoint(ABC):
         branches for certain, as long as they are on them.
         """
         if trial or not self.springs:
-            return self._move(arriving, start, length, closed, vague, sliding, relaxing, {}, trial)
+            return self._move(arriving, start, length, branches, relaxing, {}, trial)
         unknown: dict[int, arb] = {}
         for _ in range(_ROUNDS):
-            moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown, trial)
+            moved = self._move(arriving, start, length, branches, relaxing, unknown, trial)
             off = self._wrong_forces(moved, arriving, unknown)
             if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
                 return moved
@@ -167,11 +164,11 @@ class SteadyJoint(ABC):
         """
         if self.touches:
             return {}
-        law, span = self._law_of(self.springs.select(moved.closed_links)), arb(0).union(arb(moved.length))
+        law, span = self._law_of(self.springs.select(moved.branches.closed)), arb(0).union(arb(moved.length))
         known = {k: moved.velocities[k] for k in range(len(law.mass)) if k not in law.light}
         found = {}
         for n, spring in self.springs.of_link.items():
-            if spring.side == 0 or n in moved.closed_links or unknown.get(n, arb(0)) == 0:
+            if spring.side == 0 or n in moved.branches.closed or unknown.get(n, arb(0)) == 0:
                 continue
             if (lightness := self._lightness(spring, law)) == 0:
                 continue
@@ -208,22 +205,20 @@ class SteadyJoint(ABC):
         arriving: Sequence[Enclosure],
         start: fmpq,
         length: fmpq,
-        closed: Closed,
-        vague: Closed,
-        sliding: Sliding,
+        branches: Branches,
         relaxing: bool | None,
         unknown: Mapping[int, arb],
         trial: bool,
     ) -> JointStretch:
         """The same, where forces of springs with a corner are `unknown` by so much."""
         acting = [load.polynomial_from(start) for load in self._loads]
-        forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
-        self.springs.add_pulls(forces, closed, sliding, self._states.of_point)
-        result = JointStretch(length, closed, vague, sliding, {}, acting=list(forces))
+        forces = self._add_friction(forces_on(self._ends, arriving, acting), branches.sliding)
+        self.springs.add_pulls(forces, branches, self._states.of_point)
+        result = JointStretch(length, branches, acting=list(forces))
         self.springs.add_unknown(forces, unknown)
-        clusters = self._split(closed, vague)
+        clusters = self._split(branches.closed, branches.vague)
         for cluster in clusters:
-            if any(self.touches[n].left in cluster.points for n in vague):
+            if any(self.touches[n].left in cluster.points for n in branches.vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
                 self._move_cluster(cluster, result, forces, acting, relaxing, trial)
@@ -237,7 +232,7 @@ class SteadyJoint(ABC):
                 and self._states.of_point[touch.right].exact is not None
             ):
                 result.exact_contacts.add(n)
-            if n not in closed and n not in vague:
+            if n not in branches.closed | branches.vague:
                 result.rates[n] = add_terms(rate_terms(touch, result.velocities))
         for number, wave in enumerate(arriving):
             if number not in result.sends:
@@ -246,11 +241,11 @@ class SteadyJoint(ABC):
                     result.bare.add(number)
         return result
 
-    def _add_friction(self, forces: Sequence[Terms], sliding: Sliding) -> list[Terms]:
+    def _add_friction(self, forces: Sequence[Terms], sliding: Mapping[int, int]) -> list[Terms]:
         """With what is taken against sliding."""
         result = list(forces)
         for n, touch in self.touches.items():
-            sign = sliding_sign(n, sliding)
+            sign = sliding.get(n, 0)
             if sign == 0:
                 continue
             against = -sign * touch.friction

@@ -14,9 +14,10 @@ from itertools import product
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
+from wavesym.exact.contacts.branches import Closed
 from wavesym.exact.contacts.choices import ChoiceMotions, Choices, any_of, near_first
-from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
-from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
+from wavesym.exact.contacts.cluster import Cluster, subsets
+from wavesym.exact.contacts.joint_stretch import JointStretch, PointState
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, scale_terms, with_bounds
 from wavesym.exact.joints.joint_law import JointLaw, exact_sum, outgoing_terms, scatter
@@ -39,8 +40,8 @@ class TouchingJoint(SteadyJoint):
         acting: Sequence[fmpq_poly],
     ) -> None:
         law, points = cluster.law, cluster.points
-        vague = frozenset(n for n in result.vague if self.touches[n].left in points)
-        closed = frozenset(n for n in result.closed_links & self.touches.keys() if self.touches[n].left in points)
+        vague = frozenset(n for n in result.branches.vague if self.touches[n].left in points)
+        closed = frozenset(n for n in result.branches.closed & self.touches.keys() if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         bounds = {n: arb(0) for n in vague}
@@ -206,13 +207,13 @@ class TouchingJoint(SteadyJoint):
         span, points = arb(0).union(arb(moved.length)), range(len(self.law.mass))
         pulls = [[*terms, (fmpq(-1), moved.elastic[k])] for k, terms in enumerate(moved.acting)]
         self.springs.add_unknown(pulls, doubts)
-        acting = self.springs.select(moved.closed_links)
-        touching = moved.closed_links - acting
+        acting = self.springs.select(moved.branches.closed)
+        touching = moved.branches.closed - acting
         laws = [self._law_of(acting ^ other) for other in subsets(doubts)]
         together = Cluster.from_law(laws[0], points, self.touches, touching)
         known = {k: moved.velocities[k] for k in points if self.law.mass[k] != 0 or self.law.motions[k] is not None}
         settled = {k: moved.velocities[k] for k in points if together.leader(together.group(k)) in known}
-        choices = Choices(laws, points, touching, moved.vague, known, settled, tuple(doubts))
+        choices = Choices(laws, points, touching, moved.branches.vague, known, settled, tuple(doubts))
         found = self._try_every_choice(choices, arriving, pulls, span)
         if not together.stuck_points:
             free = {k: ways for k, ways in found.velocities.items() if k not in settled}
@@ -233,21 +234,21 @@ class TouchingJoint(SteadyJoint):
         self,
         n: int,
         cluster: Cluster,
-        sliding: Sliding,
+        sliding: Mapping[int, int],
         velocities: Mapping[int, Terms],
         forces: Sequence[Terms],
         span: arb,
     ) -> arb | None:
         """What friction takes under a choice, on its right side; None where the choice contradicts itself."""
         limit = arb(self.touches[n].friction)
-        if sign := sliding_sign(n, sliding):
+        if sign := sliding.get(n, 0):
             rate = add_terms(rate_terms(self.touches[n], velocities)).evaluate_on(span)
             return None if sign * rate < 0 else -sign * limit
         force = add_terms(self.forces.pull(cluster, cluster.pushes[n], velocities, forces)).evaluate_on(span)
         least, most = force.lower().max(-limit), force.upper().min(limit)
         return None if least > most else least.union(most)
 
-    def _branches(self, vague: Closed) -> list[tuple[Closed, Sliding]]:
+    def _branches(self, vague: Closed) -> list[tuple[Closed, dict[int, int]]]:
         """All that vague contacts may do: be closed or open; and what rubs: stick, or slide either way.
 
         What rubs where both sides have mass, or move as is given, moves as these do whatever it does.
@@ -257,7 +258,7 @@ class TouchingJoint(SteadyJoint):
         for closed in subsets(light):
             rubbing = [n for n in light if self.touches[n].friction != 0 and n not in closed]
             found += [
-                (closed, frozenset(zip(rubbing, signs, strict=True))) for signs in product((1, -1), repeat=len(rubbing))
+                (closed, dict(zip(rubbing, signs, strict=True))) for signs in product((1, -1), repeat=len(rubbing))
             ]
         return found
 

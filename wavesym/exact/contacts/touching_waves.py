@@ -11,7 +11,7 @@ from operator import itemgetter
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Sliding
+from wavesym.exact.contacts.branches import Branches
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.touching_joint import TouchingJoint
 from wavesym.exact.joints.enclosure import Enclosure, add_terms
@@ -22,12 +22,10 @@ from wavesym.mechanics.network import End, Network
 
 @dataclass(frozen=True)
 class Stage:
-    """A stretch of a joint: which of its contacts are closed, of which it is not known, and what slides which way."""
+    """The start of a stretch of a joint, and what its corners do on it."""
 
     start: fmpq
-    closed_links: Closed = frozenset()
-    vague: Closed = frozenset()
-    sliding: Sliding = frozenset()
+    branches: Branches
 
 
 class TouchingWaves(Waves):
@@ -108,7 +106,7 @@ def replay(
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
         joint, arriving = waves.joints[number], waves.arriving(number, start, length)
-        moved = joint.move(arriving, start, length, stage.closed_links, stage.vague, stage.sliding)
+        moved = joint.move(arriving, start, length, stage.branches)
         waves.record(number, start, moved)
         joint.take(moved)
         if not last:
