@@ -17,12 +17,12 @@ from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts import cost, guards
 from wavesym.exact.contacts import schedule as room
-from wavesym.exact.contacts.cluster import Cluster
+from wavesym.exact.contacts.cluster import Cluster, Touch
 from wavesym.exact.contacts.course import Course
 from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.schedule import GrazingError
-from wavesym.exact.joints.enclosure import Enclosure
+from wavesym.exact.joints.enclosure import Enclosure, scale_terms
 from wavesym.exact.reference import Reference
 from wavesym.pictures.field import Field
 from wavesym.scene import Scene, lower
@@ -141,14 +141,8 @@ def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
 
 
 def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
-    from wavesym.exact.contacts import steady_joint
-
-    rate = steady_joint.rate_terms
-    monkeypatch.setattr(
-        steady_joint,
-        "rate_terms",
-        lambda touch, velocities: steady_joint.scale_terms(rate(touch, velocities), fmpq(-1)),
-    )
+    rate = Touch.rate_terms
+    monkeypatch.setattr(Touch, "rate_terms", lambda touch, velocities: scale_terms(rate(touch, velocities), fmpq(-1)))
     assert differs()
 
 
@@ -247,7 +241,7 @@ def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
         known = inexact(exact)
         return Enclosure(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
 
-    monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosure.from_polynomial", blurred)
+    monkeypatch.setattr("wavesym.exact.contacts.steady_motion.Enclosure.from_polynomial", blurred)
     with pytest.raises(
         GrazingError, match=r"^contact at 0: \d+ bits do not show the sign of its gap at tau = (1|0\.9+\d*) "
     ):

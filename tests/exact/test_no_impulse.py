@@ -10,7 +10,7 @@ import pytest
 
 import wavesym
 from tests.exact.test_corner_truth import wrong
-from wavesym.exact.contacts.steady_joint import SteadyJoint
+from wavesym.exact.contacts.touching_joint import TouchingJoint
 
 ABSORBING = ["absorbing", {"rod": "1/2"}]
 RUBS: dict[str, Any] = {"joint": True, "name": "n1", "friction": "1/5"}
@@ -72,7 +72,7 @@ def test_a_joint_that_a_load_no_longer_pulls_does_not_stop_a_mass() -> None:
 
 
 def test_without_that_it_would_stop(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(SteadyJoint, "may_join", lambda *_: True)
+    monkeypatch.setattr(TouchingJoint, "may_join", lambda *_: True)
     assert [kind for kind, _ in events_of(blow(-0.3))] == ["closes"]
 
 

@@ -1,4 +1,4 @@
-"""Points of a joint that move on their own while some contacts are closed and the others open.
+"""The points of a joint, and those that move on their own while some contacts are closed and the others open.
 
 What rubs and sticks is closed, too: its two sides move as one.
 """
@@ -6,35 +6,81 @@ What rubs and sticks is closed, too: its two sides move as one.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, combinations
 
-from flint import fmpq
+from flint import arb, fmpq
 
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.branches import Closed
+from wavesym.exact.joints.enclosure import Terms, scale_terms
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.relaxation import Relaxation
 
 
 @dataclass(frozen=True)
-class Touch:
-    """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left.
+class PointState:
+    """How fast a point is, and where: exact where that is known, and the energy of the error of its set.
 
-    Where it has `friction` it takes that much against sliding, and at rest up to `breakaway`, where that is not 0.
+    Or, that of it and all `companions` together, with which it moved on the last stretch.
     """
+
+    velocity: arb
+    displacement: arb
+    exact: tuple[fmpq, fmpq] | None
+    error_energy: arb
+    companions: frozenset[int] = frozenset()
+
+    @property
+    def place(self) -> fmpq:
+        """The displacement, where it is known exactly."""
+        assert self.exact is not None
+        return self.exact[1]
+
+    @classmethod
+    def from_exact(cls, velocity: fmpq, displacement: fmpq) -> PointState:
+        """Known exactly."""
+        return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
+
+    def lose(self, energy: arb) -> PointState:
+        """The same, by so much energy less known."""
+        error_energy = ((self.error_energy.sqrt() + energy.sqrt()) ** 2).upper()
+        return replace(self, exact=None, error_energy=error_energy)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two points of a joint, by their places in it, with a law for how the right one moves less `ratio` the left."""
 
     left: int
     right: int
     ratio: fmpq
-    friction: fmpq
-    breakaway: fmpq
 
     @property
     def sides(self) -> tuple[int, int]:
         """Its two points."""
         return self.left, self.right
+
+    def rate_terms(self, velocities: Mapping[int, Terms]) -> Terms:
+        """How fast the right one moves, less what the left one does times the ratio."""
+        return [*velocities[self.right], *scale_terms(velocities[self.left], -self.ratio)]
+
+    def push(self, forces: list[Terms], terms: Terms) -> None:
+        """Add a force to those on points: it pushes the right one forwards and the left one backwards."""
+        forces[self.right] = [*forces[self.right], *terms]
+        forces[self.left] = [*forces[self.left], *scale_terms(terms, -self.ratio)]
+
+
+@dataclass(frozen=True)
+class Touch(Pair):
+    """A contact: closed, right moves `ratio` times left.
+
+    Where it has `friction` it takes that much against sliding, and at rest up to `breakaway`, where that is not 0.
+    """
+
+    friction: fmpq
+    breakaway: fmpq
 
 
 @dataclass(frozen=True)
@@ -57,7 +103,14 @@ class Cluster:
     springs: Closed = frozenset()
 
     @classmethod
-    def from_law(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
+    def from_law(
+        cls,
+        law: JointLaw,
+        points: Sequence[int],
+        touches: Mapping[int, Touch],
+        closed: Closed,
+        springs: Closed = frozenset(),
+    ) -> Cluster:
         """From the law of the joint with all contacts open. WavesymError where two rigid bodies would touch."""
         rigid = [k for k in points if law.motions[k] is not None]
         heavy = [k for k in points if law.motions[k] is None and law.mass[k] != 0]
@@ -95,7 +148,8 @@ class Cluster:
                     pushes[n] += [(k, -share * heavier / mass * ratio) for k, ratio in among]
         local = {k: n for n, k in enumerate(points)}
         grouped = law.restrict(points).group([members[k] for k in points], [local[k] for k in leaders])
-        return cls(tuple(points), grouped, pushes, law, inertia, tuple(k for k in heavy if k not in leaders))
+        stuck = tuple(k for k in heavy if k not in leaders)
+        return cls(tuple(points), grouped, pushes, law, inertia, stuck, springs)
 
     @property
     def stateless(self) -> bool:
@@ -110,17 +164,47 @@ class Cluster:
         """
         return () if self.pushes and len(self.law.mass) == 1 and not self.law.springs else Relaxation.separate(self.law)
 
+    @cached_property
+    def moves(self) -> Mapping[int, tuple[int, fmpq]]:
+        """The group of each point, and how fast the point moves in it."""
+        return dict(zip(self.points, self.law.moves, strict=True))
+
+    @cached_property
+    def leaders(self) -> tuple[int, ...]:
+        """The points that groups move like."""
+        return tuple(self.points[k] for k in self.law.leaders)
+
     def group(self, point: int) -> int:
         """The group of one of its points."""
-        return self.law.moves[self.points.index(point)][0]
+        return self.moves[point][0]
 
     def ratio(self, point: int) -> fmpq:
         """How fast a point moves in its group."""
-        return self.law.moves[self.points.index(point)][1]
+        return self.moves[point][1]
 
-    def leader(self, group: int) -> int:
-        """The point that a group moves like."""
-        return self.points[self.law.leaders[group]]
+    def leader(self, point: int) -> int:
+        """The point that the group of a point moves like."""
+        return self.leaders[self.group(point)]
+
+    def spread(self, velocities: Sequence[Terms]) -> dict[int, Terms]:
+        """The velocities of its points, from those of groups."""
+        return {k: scale_terms(velocities[group], ratio) for k, (group, ratio) in self.moves.items()}
+
+    def gather(self, forces: Sequence[Terms]) -> list[Terms]:
+        """What acts on its groups, from what acts on points."""
+        terms: list[Terms] = [[] for _ in self.law.mass]
+        for k, (group, ratio) in self.moves.items():
+            terms[group] += scale_terms(forces[k], ratio)
+        return terms
+
+    def pull(self, push: Sequence[tuple[int, fmpq]], velocities: Mapping[int, Terms], forces: Sequence[Terms]) -> Terms:
+        """The force of a closed contact that such factors of points make, but for what springs do."""
+        terms: Terms = []
+        for k, factor in push:
+            terms += scale_terms(forces[k], -factor)
+            for j in self.points:
+                terms += scale_terms(velocities[j], factor * self.joint_law.damping[k][j])
+        return terms
 
 
 def _moving(start: int, ways: Mapping[int, Sequence[tuple[int, fmpq]]]) -> Iterator[tuple[int, fmpq]]:

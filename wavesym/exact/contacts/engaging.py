@@ -2,7 +2,7 @@
 
 Two motions of which one has engaged and the other has not may part, by as much as a dashpot gives to the one alone. So
 it acts where it is certainly beyond its gap, and idles where it certainly is not. In doubt it idles, too, with a force
-that is not known: anything that its spring and its dashpot may have then (`SteadyJoint.move`). That is for as short as
+that is not known: anything that its spring and its dashpot may have then (`TouchingJoint.move`). That is for as short as
 can be: from the last instant at which it was certain to where it is again, on either side. A stretch beyond the gap
 that only touches 0 is such a stretch, and no event; the slower it is then the smaller is what is not known.
 """

@@ -8,8 +8,8 @@ from dataclasses import replace
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.branches import Branches, Closed
-from wavesym.exact.contacts.cluster import Cluster
-from wavesym.exact.contacts.joint_stretch import JointStretch, PointState
+from wavesym.exact.contacts.cluster import Cluster, PointState
+from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms
 from wavesym.exact.joints.joint_motion import JointMotion
@@ -20,10 +20,11 @@ Displacements = Mapping[int, fmpq_poly] | JointMotion
 
 
 class JointSprings:
-    """The springs, by the numbers of their links, and how long each is."""
+    """The springs, by the numbers of their links, and how long each is; with the states of the points between them."""
 
-    def __init__(self, network: Network, place: Mapping[int, int]) -> None:
+    def __init__(self, network: Network, place: Mapping[int, int], points: Mapping[int, PointState]) -> None:
         """Those between points that have a place in the joint."""
+        self._points = points
         self.of_link = {
             n: CornerSpring.from_link(link, place)
             for n, link in enumerate(network.links)
@@ -47,33 +48,31 @@ class JointSprings:
         """Of what is closed, springs."""
         return closed.intersection(self.of_link)
 
-    def add_pulls(self, forces: list[Terms], branches: Branches, points: Mapping[int, PointState]) -> None:
+    def among(self, links: Closed, points: Sequence[int]) -> Closed:
+        """Of these springs, those between some points."""
+        return frozenset(n for n in links if self.of_link[n].left in points)
+
+    def add_pulls(self, forces: list[Terms], branches: Branches) -> None:
         """Add to forces on points what springs pull, besides what displacements of points make of it."""
         for n, spring in self.of_link.items():
             closed, sign = branches.of_link(n)
             if closed:
-                constant = spring.stiffness * (self._begin(n, points).shift_known - spring.rest)
+                constant = spring.stiffness * (self._begin(n).shift_known - spring.rest)
             else:
-                constant = spring.pull(sign) if sign else fmpq(0)
-            spring.add_pull(forces, [(constant, UNIT)] if constant != 0 else [])
+                constant = spring.limit_force(sign) if sign else fmpq(0)
+            spring.push(forces, [(-constant, UNIT)] if constant != 0 else [])
 
     def add_unknown(self, forces: list[Terms], unknown: Mapping[int, arb]) -> None:
         """Add what springs pull besides, which is known to be no more than this."""
         for n, force in unknown.items():
             if force != 0:
-                self.of_link[n].add_pull(forces, [(fmpq(1), Enclosure(arb_poly(), force))])
+                self.of_link[n].push(forces, [(fmpq(-1), Enclosure(arb_poly(), force))])
 
-    def strain(
-        self,
-        cluster: Cluster,
-        result: JointStretch,
-        points: Mapping[int, PointState],
-        displacements: Displacements | None,
-    ) -> None:
+    def strain(self, cluster: Cluster, result: JointStretch, displacements: Displacements | None) -> None:
         """How the springs that act in a cluster get longer on a stretch, as the displacements there are known."""
         for n in cluster.springs:
             assert displacements is not None
-            spring, state = self.of_link[n], self._begin(n, points)
+            spring, state = self.of_link[n], self._begin(n)
             stretch = self._stretch(spring, state, cluster.points, displacements)
             if stretch.exact is None and state.exact is not None:
                 stretch = replace(stretch, onset=state.onset(spring.rate(result.velocities)))
@@ -179,5 +178,6 @@ class JointSprings:
                 root += (arb(self.of_link[n].stiffness) / 2).sqrt() * self._state[n].error
         return (root**2).upper()
 
-    def _begin(self, n: int, points: Mapping[int, PointState]) -> SpringState:
-        return self._state[n].begin(self.of_link[n], points)
+    def _begin(self, n: int) -> SpringState:
+        """Its state, acting."""
+        return self._state[n].begin(self.of_link[n], self._points)

@@ -2,46 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from flint import arb, fmpq
+from flint import fmpq
 
 from wavesym.exact.contacts.branches import Branches
+from wavesym.exact.contacts.cluster import PointState
 from wavesym.exact.contacts.springs import SpringMotion, SpringState
 from wavesym.exact.joints.enclosure import Enclosure, Terms
 
 MOST_SWING = fmpq(20)
 """A series is begun anew where it would have to bear more than exp(this): few bits cancel in it then."""
-
-
-@dataclass(frozen=True)
-class PointState:
-    """How fast a point is, and where: exact where that is known, and the energy of the error of its set.
-
-    Or, that of it and all `companions` together, with which it moved on the last stretch.
-    """
-
-    velocity: arb
-    displacement: arb
-    exact: tuple[fmpq, fmpq] | None
-    error_energy: arb
-    companions: frozenset[int] = frozenset()
-
-    @property
-    def place(self) -> fmpq:
-        """The displacement, where it is known exactly."""
-        assert self.exact is not None
-        return self.exact[1]
-
-    @classmethod
-    def from_exact(cls, velocity: fmpq, displacement: fmpq) -> PointState:
-        """Known exactly."""
-        return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
-
-    def lose(self, energy: arb) -> PointState:
-        """The same, by so much energy less known."""
-        error_energy = ((self.error_energy.sqrt() + energy.sqrt()) ** 2).upper()
-        return replace(self, exact=None, error_energy=error_energy)
 
 
 @dataclass

@@ -118,6 +118,6 @@ class Search:
         if rate is None:
             rate = arb(points[link.right].velocity - link.ratio * points[link.left].velocity)
         if link.breakaway != 0:
-            return Breakaway.begin(n, (link.friction, link.breakaway), joint.forces.lightness(n), rate)
+            return Breakaway.begin(n, (link.friction, link.breakaway), joint.lightness(n), rate)
         touching = any(each.friction == 0 for each in joint.touches.values())
         return Friction.begin(n, link.friction, joint.is_inert(n), touching, rate)

@@ -88,7 +88,7 @@ class OneSided(_SpringCorner):
     """A spring that only pulls, or only pushes: it acts (`closed`), or idles.
 
     Where it comes to rest at its gap nothing may tell on which side of that it is. Then it idles, with a force that is
-    not known (`SteadyJoint.move`), and `branch` stays what it was.
+    not known (`TouchingJoint.move`), and `branch` stays what it was.
     """
 
     _decision: Branch = field(default_factory=lambda: Branch(closed=False))

@@ -14,39 +14,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
+from wavesym.exact.contacts.cluster import Pair, PointState
 from wavesym.exact.contacts.crossing import shortfall
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, scale_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import middle
 
 
-class PointPlace(Protocol):
-    """Where a point is, as far as it is known."""
-
-    @property
-    def displacement(self) -> arb:
-        """A ball."""
-
-    @property
-    def exact(self) -> tuple[fmpq, fmpq] | None:
-        """How fast, and where."""
-
-
 @dataclass(frozen=True)
-class CornerSpring:
-    """A spring with a corner between two points of a joint, told by their places in it; right moves `ratio` times left.
+class CornerSpring(Pair):
+    """A spring with a corner between two points of a joint.
 
     `rest` is how much longer it is than at tau = 0 where it has no force. One that yields is longer than without force
     by `start` at first. A `dashpot` acts while the spring does, on one side.
     """
 
-    left: int
-    right: int
-    ratio: fmpq
     stiffness: fmpq
     side: int
     gap: fmpq
@@ -78,29 +63,20 @@ class CornerSpring:
         same = (self.left, self.right, self.ratio, self.side) == (other.left, other.right, other.ratio, -other.side)
         return same and self.side != 0 and self.gap + other.gap >= 0
 
-    def pull(self, sign: int) -> fmpq:
+    def limit_force(self, sign: int) -> fmpq:
         """With how much it pulls where it yields."""
         return self.limits[0] if sign > 0 else -self.limits[1]
 
-    def extension(self, points: Mapping[int, PointPlace]) -> tuple[fmpq, bool]:
+    def extension(self, points: Mapping[int, PointState]) -> tuple[fmpq, bool]:
         """How far apart its points are by their displacements, the middles of them; and whether that is exact."""
         left, right = points[self.left], points[self.right]
         if left.exact is not None and right.exact is not None:
             return right.exact[1] - self.ratio * left.exact[1], True
         return middle(right.displacement) - self.ratio * middle(left.displacement), False
 
-    def rate_terms(self, velocities: Mapping[int, Terms]) -> Terms:
-        """How fast it gets longer."""
-        return [*velocities[self.right], *scale_terms(velocities[self.left], -self.ratio)]
-
     def rate(self, velocities: Mapping[int, Terms]) -> Enclosure:
-        """The same, added up."""
+        """How fast it gets longer."""
         return add_terms(self.rate_terms(velocities))
-
-    def add_pull(self, forces: list[Terms], terms: Terms) -> None:
-        """Add what it does to the forces on points, where it pulls with the sum of some terms."""
-        forces[self.right] = [*forces[self.right], *((-factor, known) for factor, known in terms)]
-        forces[self.left] = [*forces[self.left], *((self.ratio * factor, known) for factor, known in terms)]
 
 
 @dataclass(frozen=True)
@@ -119,7 +95,7 @@ class SpringState:
         """Known exactly."""
         return cls(arb(stretch), stretch)
 
-    def begin(self, spring: CornerSpring, points: Mapping[int, PointPlace]) -> SpringState:
+    def begin(self, spring: CornerSpring, points: Mapping[int, PointState]) -> SpringState:
         """The same, acting."""
         if self.shift is not None:
             return self

@@ -1,199 +1,193 @@
-"""A joint with contacts of which it is not certain which are closed when.
-
-On a stretch so short that it does not matter which contacts are closed when, these are `vague`. Whatever they do, the
-velocities of points without mass are those under one choice of closed contacts, of which there are few, and the force
-of a contact is 0 or what it is under one of them. What has mass, and springs, feel a force between 0 and the largest
-of these. The bound is taken for granted, and then shown to be larger than what follows from it: as velocities of masses
-and displacements are continuous, no force can have been the first to pass it.
-"""
+"""A joint as time goes on, with links whose laws have corners: moved over one stretch after another."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import product
 
-from flint import arb, arb_poly, fmpq, fmpq_poly
+from flint import arb, fmpq
 
-from wavesym.exact.contacts.branches import Closed
-from wavesym.exact.contacts.choices import ChoiceMotions, Choices, any_of, near_first
+from wavesym.exact.contacts.branches import Branches, Closed
+from wavesym.exact.contacts.choices import ChoiceMotions, near_first
 from wavesym.exact.contacts.cluster import Cluster, subsets
-from wavesym.exact.contacts.joint_stretch import JointStretch, PointState
-from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
-from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, scale_terms, with_bounds
-from wavesym.exact.joints.joint_law import JointLaw, exact_sum, outgoing_terms, scatter
+from wavesym.exact.contacts.joint_state import JointState
+from wavesym.exact.contacts.joint_stretch import JointStretch, SwingError
+from wavesym.exact.contacts.springs import CornerSpring
+from wavesym.exact.contacts.steady_motion import SteadyMotion
+from wavesym.exact.contacts.vague_motion import VagueMotion
+from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, collect
+from wavesym.exact.joints.joint_law import JointLaw, exact_sum, forces_on, outgoing_terms, scatter
+from wavesym.exact.joints.network_waves import LoadPolynomial
+from wavesym.mechanics.loads import AppliedLoad
+from wavesym.mechanics.network import Network
 
 _ONE = fmpq(1)
-_SLACK = fmpq(1, 2**20)
-_ROUNDS = 8  # in which a bound of the forces must hold
-_CLOSER = 4  # times: what friction takes is looked for again where it is known so much closer
+_ROUNDS = 4  # in which a bound of springs' forces must hold
+_SHORTER = 4  # where it does not, as a spring answers to its own force
 
 
-class TouchingJoint(SteadyJoint):
-    """A joint as time goes on, of whose contacts some may be vague for a while."""
+class TouchingJoint(JointState):
+    """A joint as time goes on, at the working precision, under some loads."""
 
-    def _drift(
-        self,
-        cluster: Cluster,
-        result: JointStretch,
-        arriving: Sequence[Enclosure],
-        forces: Sequence[Terms],
-        acting: Sequence[fmpq_poly],
-    ) -> None:
-        law, points = cluster.law, cluster.points
-        vague = frozenset(n for n in result.branches.vague if self.touches[n].left in points)
-        closed = frozenset(n for n in result.branches.closed & self.touches.keys() if self.touches[n].left in points)
-        span = arb(0).union(arb(result.length))
-        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
-        bounds = {n: arb(0) for n in vague}
-        taken = {
-            n: arb(0, arb(max(touch.friction, touch.breakaway)).upper())
-            for n in vague
-            if (touch := self.touches[n]).friction != 0
-        }
-        pressing = [n for n in vague if self.touches[n].friction == 0]
-        slow: dict[int, arb] = {}
-        for tried in range(_ROUNDS):
-            motion = self._states.balls(cluster, prescribed)
-            pushes = self._add_pushes(forces, {n: bounds[n] for n in pressing}, taken)
-            pushed = [add_terms(each) for each in group_forces(cluster, pushes)]
-            terms = series_terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
-            q = motion.move(pushed, prescribed, result.length, terms)
-            known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
-            known |= {cluster.leader(a): each for a, each in prescribed_terms(law, prescribed).items()}
-            for k, rate in slow.items():
-                leader, besides = cluster.leader(cluster.group(k)), (rate / arb(abs(cluster.ratio(k)))).upper()
-                known[leader] = [*known.get(leader, []), (_ONE, Enclosure(arb_poly(), besides))]
-            pulls = list(forces)
-            for k in points:
-                pulls[k] = [*forces[k], (fmpq(-1), self.forces.of_springs(cluster, motion, k))]
-            choices = Choices([cluster.joint_law], points, closed, vague, known)
-            found = self._try_every_choice(choices, arriving, pulls, span)
-            if tried < _ROUNDS // 2 and any(force.rad() * _CLOSER < taken[n].rad() for n, force in found.takes.items()):
-                taken |= found.takes
-                continue
-            forced = any_of(found.pushes, span)
-            largest = {n: forced[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
-            after = self._states.state_at_end(cluster, motion, prescribed, result.length)
-            faster = self._hidden_rates(cluster, after, forced, result.length)
-            seen = all(rate <= slow.get(k, arb(0)) for k, rate in faster.items())
-            if seen and all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
-                break
-            if not seen:
-                slow = {k: (2 * rate).upper() for k, rate in faster.items()}
-            bounds |= {n: (largest[n] * arb(1 + _SLACK)).upper() for n in pressing}
-        else:
-            raise ArithmeticError("the force of a contact has no bound")
-        result.velocities |= {k: [(_ONE, each)] for k, each in any_of(found.velocities, span).items()}
-        for k in points:  # what has mass moves like that under every choice, as time goes on
-            if (leader := cluster.leader(cluster.group(k))) in known:
-                result.velocities[k] = scale_terms(known[leader], cluster.ratio(k))
-        result.sends |= any_of(found.sends, span)
-        self._bound_sends(cluster, result, closed, vague, arriving, forces)
-        result.rates |= any_of(found.rates, span)
-        result.pushes |= forced
-        result.pushes |= {
-            n: force
-            for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion, None).items()
-            if n in vague
-        }
-        result.state |= after
-        self._strain(cluster, result, motion)
-        self.stops.lose_excess(cluster, result)
-        self.stops.find_rests(cluster, result)
+    def __init__(self, network: Network, number: int, loads: Sequence[AppliedLoad]) -> None:
+        super().__init__(network, number)
+        self._loads = [LoadPolynomial(network, point, loads) for point in network.joints[number].points]
+        touched = {k for touch in self.touches.values() for k in touch.sides}
+        self._bare = {n for n, end in enumerate(self.ends) if end.place in touched and self.law.mass[end.place] == 0}
 
-    def _hidden_rates(
-        self, cluster: Cluster, after: Mapping[int, PointState], pushes: Mapping[int, Enclosure], length: fmpq
-    ) -> dict[int, arb]:
-        """How fast masses that stick may be on a stretch, besides: by what is not known of them, or pulled to slide."""
-        rates = {k: rate for k, rate in self._states.unseen_rates(cluster, after).items() if self.law.mass[k] != 0}
-        for n in cluster.pushes:
-            touch = self.touches[n]
-            excess = self.stops.excess(n, pushes[n], arb(0).union(arb(length)))
-            for k, factor in ((touch.right, _ONE), (touch.left, abs(touch.ratio))) if excess > 0 else ():
-                if self.law.mass[k] != 0 and self.law.motions[k] is None:
-                    gained = excess * arb(length * factor / self.law.mass[k])
-                    rates[k] = (rates.get(k, arb(0)) + gained).upper()
-        return rates
+    def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
+        """How fast a mass slides on what moves as is given, from an instant on; None of other friction."""
+        touch, total = self.touches[n], arb(0)
+        motions = [self.law.motions[k] for k in touch.sides]
+        if "velocity" not in motions and "acceleration" not in motions:
+            return None
+        for k, factor, motion in zip(touch.sides, (-touch.ratio, _ONE), motions, strict=True):
+            if motion is None and self.law.mass[k] == 0:
+                return None
+            total += arb(factor) * self._velocity_from(k, start)
+        return total
 
-    def _bound_sends(
-        self,
-        cluster: Cluster,
-        result: JointStretch,
-        closed: Closed,
-        vague: Closed,
-        arriving: Sequence[Enclosure],
-        forces: Sequence[Terms],
-    ) -> None:
-        """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
-        if any(self.touches[n].friction != 0 for n in vague):
-            return
-        for alone in self._split(closed, frozenset()):
-            law, points = alone.law, alone.points
-            pushed = (
-                [add_terms(each) for each in group_forces(alone, forces)] if set(points) <= set(cluster.points) else []
-            )
-            if not pushed or len(law.light) < len(pushed) or law.springs or any(each.exact is None for each in pushed):
-                continue
-            free = scatter(law, [[(_ONE, each)] for each in pushed], {})
-            moves = dict(zip(points, law.moves, strict=True))
-            gained = [self._velocity_gains(n, moves, law) for n in vague]
-            for n, end in enumerate(self._ends):
-                if (k := end.place) in moves and result.sends[n].exact is None:
-                    group, ratio = moves[k]
-                    exact = self._outgoing(n, {k: scale_terms(free[group], ratio)}, arriving[n]).exact
-                    signs = [end.ratio * ratio * gains[group] for gains in gained]
-                    least = exact if all(sign >= 0 for sign in signs) else None
-                    most = exact if all(sign <= 0 for sign in signs) else None
-                    result.sends[n] = with_bounds(result.sends[n], None, least, most)
+    def may_join(self, closed: Closed, start: fmpq) -> bool:
+        """Whether masses that these would hold together, or on what moves as is given, may be as fast as each other.
 
-    def _velocity_gains(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> dict[int, fmpq]:
-        """The velocities that groups without mass gain where a contact pushes with 1."""
-        touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
-        for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
-            if place in moves:
-                group, ratio = moves[place]
-                push[group] += factor * ratio
-        return law.light_velocities(push, {}, exact_sum)
-
-    def _try_every_choice(
-        self, choices: Choices, arriving: Sequence[Enclosure], pulls: Sequence[Terms], span: arb
-    ) -> ChoiceMotions:
-        """Velocities, rates and forces, over all choices.
-
-        And what friction without mass takes: no choice counts under which it would go back, or be beyond its limit.
+        No force that is finite stops a mass at once, whatever without mass is between it and what it would stick to.
         """
-        points, vague, known = choices.points, choices.vague, choices.known_velocities
-        ends = [n for n, end in enumerate(self._ends) if end.place in points]
-        found = ChoiceMotions({k: [] for k in points}, {n: [] for n in ends}, {n: [] for n in choices.springs})
-        for law, (chosen, sliding) in product(choices.laws, self._branches(vague)):
-            cluster = Cluster.from_law(law, points, self.touches, choices.closed_links | chosen)
-            if not _may_join(cluster, known, span):
+        for cluster in self.clusters(closed, frozenset()):
+            for k in cluster.stuck_points:
+                like = arb(cluster.ratio(k)) * self._velocity_from(cluster.leader(k), start)
+                if not (self._velocity_from(k, start) - like).contains(0):
+                    return False
+        return True
+
+    def _velocity_from(self, k: int, start: fmpq) -> arb:
+        """That of a mass, or of what moves as is given, with all that is not known of it."""
+        given = self.law.motions[k] is not None
+        return arb(self._loads[k].polynomial_from(start)(fmpq(0))) if given else self.velocity(k)
+
+    def move(
+        self,
+        arriving: Sequence[Enclosure],
+        start: fmpq,
+        length: fmpq,
+        branches: Branches,
+        relaxing: bool | None = None,
+        trial: bool = False,
+    ) -> JointStretch:
+        """Its motion on a stretch on which its corners are on these branches.
+
+        Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
+        a stretch is decided already (`relaxing` None), or it is seen that this is lost among rounding errors:
+        SwingError where it is not, or where it is not to be tried. In a `trial` springs with a corner keep to their
+        branches for certain, as long as they are on them.
+        """
+        unknown: dict[int, arb] = {}
+        for _ in range(_ROUNDS):
+            moved = self._move(arriving, start, length, branches, relaxing, trial, unknown)
+            off = {} if trial or not self.springs else self._wrong_forces(moved, arriving, unknown)
+            if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
+                return moved
+            unknown = {n: (2 * force).upper() for n, force in off.items()}
+        raise SwingError(length / _SHORTER)
+
+    def _move(
+        self,
+        arriving: Sequence[Enclosure],
+        start: fmpq,
+        length: fmpq,
+        branches: Branches,
+        relaxing: bool | None,
+        trial: bool,
+        unknown: Mapping[int, arb],
+    ) -> JointStretch:
+        """The same, where forces of springs with a corner are `unknown` by so much."""
+        acting = [load.polynomial_from(start) for load in self._loads]
+        forces = self.add_friction(forces_on(self.ends, arriving, acting), branches.sliding)
+        self.springs.add_pulls(forces, branches)
+        result = JointStretch(length, branches, acting=list(forces))
+        self.springs.add_unknown(forces, unknown)
+        clusters = self.clusters(branches.closed, branches.vague)
+        for cluster in clusters:
+            if any(self.touches[n].left in cluster.points for n in branches.vague):
+                VagueMotion(self, cluster, result, forces, acting).move(arriving)
+            else:
+                SteadyMotion(self, cluster, result, forces, acting).move(relaxing, trial)
+        self.springs.strain_others(result)
+        for n, energy in self.springs.flows(result, unknown):
+            for k in next(cluster.points for cluster in clusters if n in cluster.springs):
+                result.state[k] = result.state.get(k, self.points[k]).lose(energy)
+        for n, touch in self.touches.items():
+            if all(self.points[k].exact is not None for k in touch.sides):
+                result.exact_contacts.add(n)
+            if n not in branches.closed | branches.vague:
+                result.rates[n] = add_terms(touch.rate_terms(result.velocities))
+        for number, (end, wave) in enumerate(zip(self.ends, arriving, strict=True)):
+            if number not in result.sends:
+                sent = outgoing_terms(end, result.velocities[end.place], wave)
+                result.sends[number] = add_terms(sent)
+                if number in self._bare and not collect([*sent, (-_ONE, wave)]):  # up to a factor, what acts on it
+                    result.bare.add(number)
+        return result
+
+    # what is not known of the forces of springs
+
+    def _wrong_forces(
+        self, moved: JointStretch, arriving: Sequence[Enclosure], unknown: Mapping[int, arb]
+    ) -> dict[int, arb]:
+        """How wrong the force of each spring with a corner may be, with the dashpots that act with them."""
+        held = self._farthest_reaches(moved, unknown) if any(unknown.values()) else {}
+        most = {n: (arb(self.springs.of_link[n].stiffness) * beyond).upper() for n, beyond in held.items()}
+        doubts = {n: force.min(most.get(n, force)) for n, force in self.springs.doubts(moved).items()}
+        rates = self._resolve_doubts(moved, doubts, arriving) if doubts else {}
+        self.springs.follow(moved, rates)
+        off, span = self.springs.wrong_forces(moved), arb(0).union(arb(moved.length))
+        off |= {n: off[n].min(force) for n, force in most.items()}
+        moved.doubts = frozenset(n for n in doubts if off[n] != 0)
+        for n in moved.doubts:
+            off[n] += (arb(self.springs.of_link[n].dashpot) * abs(rates[n].evaluate_on(span))).upper()
+        self.springs.hold_back(moved, held)
+        return off
+
+    def _farthest_reaches(self, moved: JointStretch, unknown: Mapping[int, arb]) -> dict[int, arb]:
+        """How far beyond their gaps springs get at most that idle, as far as is known, and whose ends have no mass.
+
+        Such a spring gets longer at r - w f, its own force f = K s; r is what all else makes of it. Where s is largest
+        on a stretch, beyond where it was before, its rate is 0, and so s = r/(w K).
+        """
+        if self.touches:
+            return {}
+        law, span = self.law_with(self.springs.select(moved.branches.closed)), arb(0).union(arb(moved.length))
+        known = {k: moved.velocities[k] for k in range(len(law.mass)) if k not in law.light}
+        found = {}
+        for n, spring in self.springs.of_link.items():
+            if spring.side == 0 or n in moved.branches.closed or unknown.get(n, arb(0)) == 0:
                 continue
-            rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
-            rubbed = self._add_friction(pulls, sliding)
-            q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
-            moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
-            moving |= choices.settled_velocities
-            forces = {
-                n: self._friction_force(n, cluster, sliding, moving, rubbed, span) for n in vague if self._rubs_alone(n)
-            }
-            if any(force is None for force in forces.values()):
+            if (lightness := self._spring_lightness(spring, law)) == 0:
                 continue
-            takes = {n: found.takes.get(n, force).union(force) for n, force in forces.items() if force is not None}
-            found.takes |= takes
-            for k in points:
-                found.velocities[k].append(moving[k])
-            for n, sent in found.sends.items():
-                sent.append(outgoing_terms(self._ends[n], moving[self._ends[n].place], arriving[n]))
-            for n, rates in found.spring_rates.items():
-                rates.append(self.springs.of_link[n].rate_terms(moving))
-            for n, touch in self.touches.items():
-                if n in cluster.pushes:
-                    force = self.forces.pull(cluster, cluster.pushes[n], moving, rubbed)
-                    found.pushes.setdefault(n, []).append(force)
-                elif touch.left in moving and touch.right in moving:
-                    found.rates.setdefault(n, []).append(rate_terms(touch, moving))
+            both = {m for m, other in self.springs.of_link.items() if other.is_opposite(spring)}  # one at a time
+            forces = self._pulled(moved, {m: force for m, force in unknown.items() if m != n and m not in both})
+            q = scatter(law, forces, known)
+            driven = spring.side * spring.rate(dict(enumerate(q))).evaluate_on(span)
+            farthest = driven.upper() / arb(lightness * spring.stiffness)
+            found[n] = self.springs.reach_beyond(n).max(farthest.upper())
         return found
+
+    def _pulled(self, moved: JointStretch, unknown: Mapping[int, arb]) -> list[Terms]:
+        """What acts on points, with what springs pull, but for such forces of some."""
+        forces = [[*terms, (-_ONE, moved.elastic[k])] for k, terms in enumerate(moved.acting)]
+        self.springs.add_unknown(forces, unknown)
+        return forces
+
+    def slowing(self, n: int) -> fmpq:
+        """How many times as fast a spring gets longer without its dashpot, at most, where what is without mass does."""
+        spring = self.springs.of_link[n]
+        return 1 + spring.dashpot * self._spring_lightness(spring, self.law_with(frozenset()))
+
+    @staticmethod
+    def _spring_lightness(spring: CornerSpring, law: JointLaw) -> fmpq:
+        """How much faster a spring would get longer if it pulled less by 1: 0 where its ends are masses."""
+        push = [fmpq(0)] * len(law.mass)
+        push[spring.right], push[spring.left] = _ONE, -spring.ratio
+        given = law.light_velocities(push, {}, exact_sum)
+        return sum((push[k] * velocity for k, velocity in given.items()), fmpq(0))
 
     def _resolve_doubts(
         self, moved: JointStretch, doubts: Mapping[int, arb], arriving: Sequence[Enclosure]
@@ -205,85 +199,23 @@ class TouchingJoint(SteadyJoint):
         forces of springs are wrong by their `doubts`. What else follows from velocities is known as closely then.
         """
         span, points = arb(0).union(arb(moved.length)), range(len(self.law.mass))
-        pulls = [[*terms, (fmpq(-1), moved.elastic[k])] for k, terms in enumerate(moved.acting)]
-        self.springs.add_unknown(pulls, doubts)
         acting = self.springs.select(moved.branches.closed)
         touching = moved.branches.closed - acting
-        laws = [self._law_of(acting ^ other) for other in subsets(doubts)]
+        laws = [self.law_with(acting ^ other) for other in subsets(doubts)]
         together = Cluster.from_law(laws[0], points, self.touches, touching)
         known = {k: moved.velocities[k] for k in points if self.law.mass[k] != 0 or self.law.motions[k] is not None}
-        settled = {k: moved.velocities[k] for k in points if together.leader(together.group(k)) in known}
-        choices = Choices(laws, points, touching, moved.branches.vague, known, settled, tuple(doubts))
-        found = self._try_every_choice(choices, arriving, pulls, span)
+        settled = {k: moved.velocities[k] for k in points if together.leader(k) in known}
+        forces = self._pulled(moved, doubts)
+        found = ChoiceMotions(self, laws, points, touching, moved.branches.vague, forces, known, settled, span)
         if not together.stuck_points:
-            free = {k: ways for k, ways in found.velocities.items() if k not in settled}
+            free = found.of_points([k for k in points if k not in settled])
             for k, closer in near_first(free, span).items():
                 if closer.error < add_terms(moved.velocities[k]).error:
                     moved.velocities[k] = [(_ONE, closer)]
             pressing = {n: ways for n, ways in found.pushes.items() if self.touches[n].friction == 0}
-            for before, ways in ((moved.sends, found.sends), (moved.rates, found.rates), (moved.pushes, pressing)):
+            sends = found.sends(arriving)
+            for before, ways in ((moved.sends, sends), (moved.rates, found.rates), (moved.pushes, pressing)):
                 close = near_first({n: each for n, each in ways.items() if n in before}, span)
                 before |= {n: each for n, each in close.items() if each.error < before[n].error}
-        return near_first(found.spring_rates, span)
-
-    def _rubs_alone(self, n: int) -> bool:
-        """Whether what rubs has a side without mass: its joint has no other corner then."""
-        return self.touches[n].friction != 0 and not self.is_inert(n)
-
-    def _friction_force(
-        self,
-        n: int,
-        cluster: Cluster,
-        sliding: Mapping[int, int],
-        velocities: Mapping[int, Terms],
-        forces: Sequence[Terms],
-        span: arb,
-    ) -> arb | None:
-        """What friction takes under a choice, on its right side; None where the choice contradicts itself."""
-        limit = arb(self.touches[n].friction)
-        if sign := sliding.get(n, 0):
-            rate = add_terms(rate_terms(self.touches[n], velocities)).evaluate_on(span)
-            return None if sign * rate < 0 else -sign * limit
-        force = add_terms(self.forces.pull(cluster, cluster.pushes[n], velocities, forces)).evaluate_on(span)
-        least, most = force.lower().max(-limit), force.upper().min(limit)
-        return None if least > most else least.union(most)
-
-    def _branches(self, vague: Closed) -> list[tuple[Closed, dict[int, int]]]:
-        """All that vague contacts may do: be closed or open; and what rubs: stick, or slide either way.
-
-        What rubs where both sides have mass, or move as is given, moves as these do whatever it does.
-        """
-        light = [n for n in sorted(vague) if not self.is_inert(n)]
-        found = []
-        for closed in subsets(light):
-            rubbing = [n for n in light if self.touches[n].friction != 0 and n not in closed]
-            found += [
-                (closed, dict(zip(rubbing, signs, strict=True))) for signs in product((1, -1), repeat=len(rubbing))
-            ]
-        return found
-
-    def is_inert(self, n: int) -> bool:
-        """Whether what rubs has no side without mass, so that it slides no other way at once."""
-        touch = self.touches[n]
-        return touch.friction != 0 and all(
-            self.law.mass[k] != 0 or self.law.motions[k] is not None for k in (touch.left, touch.right)
-        )
-
-    def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb], taken: Mapping[int, arb]) -> list[Terms]:
-        """With contacts that push with anything between 0 and their bounds, and what friction takes."""
-        result = list(forces)
-        pushes = {n: arb((bound / 2).upper(), (bound / 2).upper()) for n, bound in bounds.items()}
-        for n, push in (pushes | dict(taken)).items():
-            between = Enclosure(arb_poly([push.mid()]), push.rad())
-            result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
-            result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
-        return result
-
-
-def _may_join(cluster: Cluster, known: Mapping[int, Terms], span: arb) -> bool:
-    """Whether what sticks may be as fast at some instant as what it sticks to: see `SteadyJoint.may_join`."""
-    for k in cluster.stuck_points:
-        slower = scale_terms(known[cluster.leader(cluster.group(k))], -cluster.ratio(k))
-        if k in known and not add_terms([*known[k], *slower]).evaluate_on(span).contains(0):
-            return False
-    return True
+        rates = {n: [self.springs.of_link[n].rate_terms(q) for q in found.velocities] for n in doubts}
+        return near_first(rates, span)
