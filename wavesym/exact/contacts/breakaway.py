@@ -18,16 +18,17 @@ from flint import arb, fmpq
 from wavesym.exact.contacts.branches import Branch
 from wavesym.exact.contacts.corner import Corner
 from wavesym.exact.contacts.crossing import certain_rise
+from wavesym.exact.contacts.friction import sliding_branch
 from wavesym.exact.contacts.guards import (
     BranchEnd,
-    begins_bearable,
-    begins_to_grow,
+    begins_with,
+    first_end,
     is_not_negative,
     lasts_until,
-    value_range,
+    margins,
 )
 from wavesym.exact.contacts.joint_stretch import JointStretch
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
+from wavesym.exact.joints.enclosure import Enclosure, add_terms
 
 _STUCK = frozenset({0})
 
@@ -50,36 +51,24 @@ class _Rest:
 class Breakaway(Corner):
     """What rubs so, as time goes on: how fast its right side goes less its left one, and what it may do."""
 
-    link: int
     limit: fmpq
     most: fmpq
     lightness: fmpq
     rate: arb
     possible: frozenset[int]
-    _decision: Branch
     _breaks: int = field(default=0)  # the way that it breaks away at once, as its last trial of sticking shows
     _rest: _Rest | None = field(default=None)  # the last such trial, while it may still stick
 
     @classmethod
     def begin(cls, link: int, limits: tuple[fmpq, fmpq], lightness: fmpq, rate: arb) -> Breakaway:
         """At the start, with its limits sliding and at rest: what is at rest sticks."""
-        sign = int(rate > 0) - int(rate < 0)
-        return cls(link, *limits, lightness, rate, frozenset({sign}), Branch(sign == 0, sign))
-
-    @property
-    def closed(self) -> bool:  # type: ignore[override]
-        """Whether it certainly sticks."""
-        return self.possible == _STUCK
-
-    @property
-    def sign(self) -> int:  # type: ignore[override]
-        """Which way it certainly slides."""
-        return 0 if self.is_unclear else next(iter(self.possible))
+        now = sliding_branch(rate)
+        return cls(link, now, now, *limits, lightness, rate, frozenset({now.sign}))
 
     @property
     def may_close(self) -> bool:
         """It sticks."""
-        return self.closed
+        return self.now.closed
 
     @property
     def is_unclear(self) -> bool:
@@ -89,88 +78,86 @@ class Breakaway(Corner):
     @property
     def ways(self) -> tuple[int, ...]:
         """That in which it slides; both from rest."""
-        return (1, -1) if self.closed else tuple(sorted(self.possible - _STUCK))
+        return (1, -1) if self.now.closed else tuple(sorted(self.possible - _STUCK))
 
     def meet(self, rate: arb) -> None:
         """Know how fast it slides on what moves as is given, which may jump."""
         if rate.overlaps(self.rate):
             return
         self.rate = rate
-        sign = int(rate > 0) - int(rate < 0)
-        self.possible = frozenset({sign}) if sign or rate.is_zero() else frozenset({-1, 0, 1})
+        sign = sliding_branch(rate).sign
+        self._may_be_on(frozenset({sign}) if sign or rate.is_zero() else frozenset({-1, 0, 1}))
+
+    def _may_be_on(self, possible: frozenset[int]) -> None:
+        """Know on which branches it may be."""
+        self.possible = possible
+        sign = next(iter(possible)) if len(possible) == 1 else 0
+        self.now = Branch(possible == _STUCK, sign)
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether N is within its limits, or it certainly slides, just after the start; not while it is unclear."""
         if self.is_unclear:
             return False
-        if self.link in moved.branches.closed:
-            margins = self._margins(moved)
-            self._rest = _Rest(margins, moved.length)
-            falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in margins.items()}
-            self._breaks = next((way for way, fall in falls.items() if begins_to_grow(fall)), 0)
-            return all(map(begins_bearable, margins.values()))
+        if self._is_closed(moved):
+            left = self._margins(moved)
+            self._rest = _Rest(left, moved.length)
+            falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in left.items()}
+            self._breaks = next((way for way, fall in falls.items() if begins_with(fall, 1)), 0)
+            return all(begins_with(margin, 0) for margin in left.values())
         sign = moved.branches.sliding.get(self.link, 0)
-        if self.closed:
+        if self.now.closed:
             return sign == self._breaks
-        return bool(sign * self.rate > 0) or begins_to_grow(self._thrust(moved, sign))
+        return bool(sign * self.rate > 0) or begins_with(self._thrust(moved, sign), 1)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """Until when N is certainly within its limits, or it certainly goes the way it slides."""
-        if self.link in moved.branches.closed:
+        if self._is_closed(moved):
             self._rest = _Rest(self._margins(moved), moved.length)
-            margins = self._rest.margins.values()
-            ends = [lasts_until(margin, low, moved.length, resolution) for margin in margins]
-            return min((end for end in ends if end is not None), key=lambda end: end.length, default=None)
-        sign = moved.branches.sliding.get(self.link, 0)
-        forward = add_terms([(fmpq(sign), moved.rates[self.link])])
+            return first_end(self._rest.margins.values(), low, moved.length, resolution)
+        sign, forward = self._forward(moved)
         if low == 0 and not sign * self.rate > 0:  # it has just broken away, and gets faster until that is seen
             risen = certain_rise(forward, moved.length, resolution)
-            if risen is None or not value_range(self._thrust(moved, sign), risen) >= 0:
+            if risen is None or not self._thrust(moved, sign).evaluate_on(arb(0).union(arb(risen))) >= 0:
                 return BranchEnd(fmpq(0), fmpq(0))
             low = risen
         return lasts_until(forward, low, moved.length, resolution)
 
-    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch) -> bool:
         """Whether it is on its branch on all of a short stretch."""
-        if self.link in moved.branches.closed:
-            return all(is_not_negative(margin, length) for margin in self._margins(moved).values())
-        sign = moved.branches.sliding.get(self.link, 0)
-        forward = add_terms([(fmpq(sign), moved.rates[self.link])])
-        return value_range(forward, length) > 0 or value_range(self._thrust(moved, sign), length) > 0
+        if self._is_closed(moved):
+            return all(is_not_negative(margin, moved.length) for margin in self._margins(moved).values())
+        sign, forward = self._forward(moved)
+        return any(known.evaluate_on(moved.span) > 0 for known in (forward, self._thrust(moved, sign)))
 
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
+    def advance(self, moved: JointStretch) -> None:
         """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
         if self._rest is not None:
-            self._rest.time += length
+            self._rest.time += moved.length
             others = (moved.branches.closed | moved.branches.vague) - {self.link}
             if others or moved.branches.sliding:
                 self._rest = None
-        if self.link in moved.branches.closed:
+        if self._is_closed(moved):
             self.rate = arb(0)
             return
         rate = moved.rates[self.link]
-        after = rate.evaluate(length) if rate.exact is None else arb(rate.exact(length))
+        after = rate.evaluate(moved.length) if rate.exact is None else arb(rate.exact(moved.length))
         if self.link in moved.branches.vague:
-            self.possible = self._reachable_branches(moved.pushes[self.link], length, after)
+            self._may_be_on(self._reachable_branches(moved, after))
         elif after.is_zero():
-            self.possible = _STUCK
+            self._may_be_on(_STUCK)
         self.rate = after
-
-    @property
-    def branch(self) -> Branch:
-        """It sticks, or slides one way."""
-        return self._decision
 
     def take(self, moved: JointStretch) -> None:
         """Stick, or slide one way."""
-        closed, sign = self.link in moved.branches.closed, moved.branches.sliding.get(self.link, 0)
-        self.possible, self._decision = frozenset({sign}), Branch(closed, sign)
+        super().take(moved)
+        self.possible = frozenset({self.now.sign})
 
-    def _reachable_branches(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:
+    def _reachable_branches(self, moved: JointStretch, after: arb) -> frozenset[int]:
         """The branches that it can be on at the end of a short stretch, whatever it did on it."""
         least, most = arb(self.limit), arb(self.most)
-        drive, last = value_range(holding, length), holding.evaluate(length)
-        drives, h = {way: -way * drive for way in (1, -1)}, arb(length)
+        holding, h = moved.pushes[self.link], arb(moved.length)
+        drive, last = holding.evaluate_on(moved.span), holding.evaluate(moved.length)
+        drives = {way: -way * drive for way in (1, -1)}
         rested, again = self._rest is None or not self._rest.is_over, False
         rests = {way for way in self.possible - _STUCK if self._certainly_stops(way, drives[way], h)}
         reached, coming = set(self.possible), set(self.possible)
@@ -199,7 +186,12 @@ class Breakaway(Corner):
 
     def _margins(self, moved: JointStretch) -> dict[int, Enclosure]:
         """What is left of its limit at rest before it breaks away, either way."""
-        return {way: add_terms([(self.most, UNIT), (fmpq(way), moved.pushes[self.link])]) for way in (1, -1)}
+        return dict(zip((1, -1), margins(self.most, moved.pushes[self.link]), strict=True))
+
+    def _forward(self, moved: JointStretch) -> tuple[int, Enclosure]:
+        """The way that it slides, and how fast it goes that way."""
+        sign = moved.branches.sliding.get(self.link, 0)
+        return sign, add_terms([(fmpq(sign), moved.rates[self.link])])
 
     def _thrust(self, moved: JointStretch, sign: int) -> Enclosure:
         """What drives it the way it slides, beyond its friction: its mass times its acceleration."""

@@ -38,7 +38,7 @@ class ClusterMotion:
     ) -> None:
         self.joint, self.cluster, self.result = joint, cluster, result
         self.law, self.points, self.length = cluster.law, cluster.points, result.length
-        self.span = arb(0).union(arb(result.length))
+        self.span = result.span
         self.forces, self.acting = forces, acting
         self.prescribed = [acting[k] for k in cluster.leaders]
         self.given: dict[int, Terms] = {

@@ -13,24 +13,24 @@ from dataclasses import dataclass
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Branch
-from wavesym.exact.contacts.guards import (
-    BranchEnd,
-    begins_bearable,
-    begins_to_grow,
-    is_not_negative,
-    lasts_until,
-    value_range,
-)
+from wavesym.exact.contacts.guards import BranchEnd, begins_with, is_not_negative, lasts_until
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.joints.enclosure import Enclosure
 
 
+@dataclass
 class Corner(ABC):
-    """A link whose law has a corner, as time goes on; which way it slides, where it rubs and is certain to (`sign`)."""
+    """A link whose law has a corner, as time goes on.
+
+    Args:
+        link: its number.
+        branch: the branch on which it was last decided to be.
+        now: that on which it certainly is; neither closed nor sliding where that is not certain.
+    """
 
     link: int
-    closed: bool
-    sign: int
+    branch: Branch
+    now: Branch
 
     @property
     @abstractmethod
@@ -70,126 +70,98 @@ class Corner(ABC):
         """How long its branch certainly lasts on a stretch, as it does up to `low`; None: all the way."""
 
     @abstractmethod
-    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
 
     @abstractmethod
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
+    def advance(self, moved: JointStretch) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
 
-    @property
-    @abstractmethod
-    def branch(self) -> Branch:
-        """That which was decided last."""
-
-    @abstractmethod
     def take(self, moved: JointStretch) -> None:
         """Be on the branch that a stretch begins with."""
+        self.now = self.branch = moved.branches.of_link(self.link)
+
+    def _is_closed(self, moved: JointStretch) -> bool:
+        """Whether it is closed on a stretch."""
+        return self.link in moved.branches.closed
 
 
 @dataclass
 class Contact(Corner):
-    """A contact as time goes on: how wide its gap is, as far as that is known, and its branch when last decided."""
+    """A contact as time goes on: how wide its gap is, exactly (a fraction) or as far as that is known."""
 
-    link: int
-    gap: arb
-    exact: fmpq | None
-    closed: bool
-    sign = 0
+    gap: fmpq | arb
 
     @classmethod
     def begin(cls, link: int, gap: fmpq) -> Contact:
         """At the start, where what touches is taken for closed."""
-        return cls(link, arb(gap), gap, gap == 0)
+        return cls(link, Branch(gap == 0), Branch(gap == 0), gap)
 
     @property
     def may_close(self) -> bool:
         """Its gap is 0; or it was closed, and it is not known whether it has a gap by now."""
-        return self.is_held or (self.closed and not self.wide)
+        return self.is_held or (self.now.closed and self.is_unclear)
 
     @property
     def is_held(self) -> bool:
         """Its gap is 0."""
-        return self.exact is not None and self.exact == 0
+        return isinstance(self.gap, fmpq) and self.gap == 0
 
     @property
     def is_unclear(self) -> bool:
         """It is not known whether it has a gap."""
-        return not self.is_held and not self.wide
-
-    @property
-    def branch(self) -> Branch:
-        """Closed or open."""
-        return Branch(self.closed)
-
-    def take(self, moved: JointStretch) -> None:
-        """Be closed or open."""
-        self.closed = self.link in moved.branches.closed
-
-    @property
-    def wide(self) -> bool:
-        """Its gap is certainly more than 0."""
-        return self.exact > 0 if self.exact is not None else bool(self.gap > 0)
+        return not self.is_held and not self.gap > 0
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is not negative, or its gap grows, just after the start.
 
         Where it is not known whether it has a gap, its force has to be 0 throughout: then the gap stays as it is.
         """
-        if self.link in moved.branches.closed:
+        if self._is_closed(moved):
             force = moved.pushes[self.link]
-            return begins_bearable(force) if self.is_held else force.is_zero
-        return self.wide or begins_to_grow(moved.rates[self.link])
+            return begins_with(force, 0) if self.is_held else force.is_zero
+        return bool(self.gap > 0) or begins_with(moved.rates[self.link], 1)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long its force, or its gap, is certainly not negative."""
-        if self.link in moved.branches.closed:
+        if self._is_closed(moved):
             force = moved.pushes[self.link]
             if not self.is_held:
                 return None if force.is_zero else BranchEnd(low, None)
             return lasts_until(force, low, moved.length, resolution)
         rate = moved.rates[self.link]
-        if self.exact is not None and rate.exact is not None:
-            gap = Enclosure.from_polynomial(rate.exact.integral() + self.exact)
+        if isinstance(self.gap, fmpq) and rate.exact is not None:
+            gap = Enclosure.from_polynomial(rate.exact.integral() + self.gap)
             return lasts_until(gap, low, moved.length, resolution)
-        if not self.wide and low == 0:  # it opens: as long as it grows it is open
+        if not self.gap > 0 and low == 0:  # it opens: as long as it grows it is open
             grows = lasts_until(rate, low, moved.length, resolution)
             if grows is None or grows.length == 0:
                 return grows
             low = grows.length
         error = (rate.error * arb(moved.length)).upper()
-        return lasts_until(Enclosure(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
+        gap = Enclosure(rate.polynomial.integral() + arb(self.gap), error)
+        return lasts_until(gap, low, moved.length, resolution)
 
-    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
-        if self.link in moved.branches.closed:
-            return is_not_negative(moved.pushes[self.link], length)
-        return bool(self.gap + arb(length) * value_range(moved.rates[self.link], length) > 0)
+        if self._is_closed(moved):
+            return is_not_negative(moved.pushes[self.link], moved.length)
+        return bool(arb(self.gap) + arb(moved.length) * moved.rates[self.link].evaluate_on(moved.span) > 0)
 
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
-        """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
-        if self.link in moved.branches.closed:
+    def advance(self, moved: JointStretch) -> None:
+        """Know its gap at the end of a stretch, or of a short one on which it was left open."""
+        if self._is_closed(moved):
             return
+        rate, h = moved.rates[self.link], arb(moved.length)
         if self.link in moved.branches.vague:
-            self._advance_vague(moved, length)
+            rates = rate.evaluate_on(moved.span)
+            closes = rates < 0 and self.gap + h * rates < 0
+            pushes = closes and moved.pushes[self.link].evaluate_on(moved.span) > 0
+            self.gap = fmpq(0) if pushes else _gap_within(self.gap + h * rates.union(arb(0)))
+        elif isinstance(self.gap, fmpq) and rate.exact is not None:
+            self.gap = self.gap + rate.exact.integral()(moved.length)
         else:
-            self._grow(moved.rates[self.link], length)
-
-    def _grow(self, rate: Enclosure, length: fmpq) -> None:
-        h = arb(length)
-        gap = rate.polynomial.integral()(h) + self.gap + arb(0, (rate.error * h).upper())
-        if self.exact is not None and rate.exact is not None:
-            self.exact = self.exact + rate.exact.integral()(length)
-            self.gap = arb(self.exact)
-        else:
-            self.gap, self.exact = _gap_within(gap), None
-
-    def _advance_vague(self, moved: JointStretch, length: fmpq) -> None:
-        h, rate = arb(length), value_range(moved.rates[self.link], length)
-        if rate < 0 and value_range(moved.pushes[self.link], length) > 0 and self.gap + h * rate < 0:
-            self.gap, self.exact = arb(0), fmpq(0)
-        else:
-            self.gap, self.exact = _gap_within(self.gap + h * rate.union(arb(0))), None
+            self.gap = _gap_within(rate.polynomial.integral()(h) + arb(self.gap) + arb(0, (rate.error * h).upper()))
 
 
 def _gap_within(gap: arb) -> arb:

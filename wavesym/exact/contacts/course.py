@@ -160,7 +160,7 @@ class Course:
         found = self._decide(start, limit) if self._spread is None else None
         if found is None:
             if not self._joint.touches:
-                raise UndecidedError(self._corners[0].link, self._corners[0].closed, start)
+                raise UndecidedError(self._corners[0].link, self._corners[0].now.closed, start)
             self._drift(start, limit)
             return
         moved, end = found
@@ -182,7 +182,7 @@ class Course:
         lately = self._lately.setdefault(corner.link, deque(maxlen=CHATTER))
         lately.append(start)
         if len(lately) == CHATTER and start - lately[0] <= self._search.moment:
-            raise UndecidedError(corner.link, corner.closed, start, chatters=True)
+            raise UndecidedError(corner.link, corner.now.closed, start, chatters=True)
 
     def _decide(self, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of branches that is certainly right just after `start`, and its end."""
@@ -192,7 +192,7 @@ class Course:
             moved = self._move(start, limit - start, branches, trial=True)
             if all(corner.begins(moved) for corner in self._corners):
                 moved, end = self._cut(start, moved, fmpq(0))
-                if moved.doubts and not all(corner.lasts(moved, moved.length) for corner in self._corners):
+                if moved.doubts and not all(corner.lasts(moved) for corner in self._corners):
                     return None  # a force that is not known may end another branch
                 return (moved, end) if end is None or end.length > 0 else None
         return None
@@ -205,8 +205,9 @@ class Course:
             for signs in product(*(corner.ways for corner in others)):
                 sliding = {each.link: sign for each, sign in zip(others, signs, strict=True) if sign}
                 found.append(Branches(closed, sliding))
-        now = {corner.link: (corner.closed, corner.sign) for corner in self._corners}
-        return sorted(found, key=lambda branches: sum(branches.of_link(n) != branch for n, branch in now.items()))
+        return sorted(
+            found, key=lambda branches: sum(branches.of_link(each.link) != each.now for each in self._corners)
+        )
 
     def _add_stage(self, start: fmpq, moved: JointStretch) -> None:
         self.stages.append(Stage(start, moved.branches))
@@ -227,7 +228,7 @@ class Course:
         """The joint goes to the end of its stretch; gaps become what they are there."""
         self._joint.take(moved)
         for corner in self._corners:
-            corner.advance(moved, moved.length)
+            corner.advance(moved)
 
     def _send(self, start: fmpq, moved: JointStretch) -> None:
         """What a joint sends is kept; what begins there is a breakpoint at the other ends of its bars."""
@@ -251,7 +252,7 @@ class Course:
             if doubt.next > width:
                 unclear = (corner for corner in self._corners if corner.is_unclear)
                 worst = next(unclear, self._corners[0])
-                raise UndecidedError(worst.link, worst.closed, start)
+                raise UndecidedError(worst.link, worst.now.closed, start)
             length = min(length, doubt.next)
             doubt.next *= 1 << (_LONGER if doubt.next < _MANY * doubt.first else _LONGEST)
         else:  # what is not known came with a front: it takes about as long again
@@ -284,13 +285,13 @@ class Course:
             if closed & light and not self._joint.may_join(closed | vague, start):
                 vague |= closed & light
                 continue
-            sliding = {each.link: each.sign for each in steady if each.sign and each.link not in closed}
+            sliding = {each.link: each.now.sign for each in steady if each.now.sign and each.link not in closed}
             moved = self._joint.move(arriving, start, length, Branches(closed, sliding | turned, vague))
             turning = {each.link: sign for each in rubbing if (sign := each.leaving(moved))}
             if turning:
                 turned |= turning
                 continue
-            wrong = frozenset(corner.link for corner in steady if not corner.lasts(moved, length))
+            wrong = frozenset(corner.link for corner in steady if not corner.lasts(moved))
             if not wrong:
                 return moved
             held |= wrong & inert

@@ -2,21 +2,20 @@
 
 Two motions of which one has engaged and the other has not may part, by as much as a dashpot gives to the one alone. So
 it acts where it is certainly beyond its gap, and idles where it certainly is not. In doubt it idles, too, with a force
-that is not known: anything that its spring and its dashpot may have then (`TouchingJoint.move`). That is for as short as
-can be: from the last instant at which it was certain to where it is again, on either side. A stretch beyond the gap
+that is not known: anything that its spring and its dashpot may have then (`TouchingJoint.move`). That is for as short
+as can be: from the last instant at which it was certain to where it is again, on either side. A stretch beyond the gap
 that only touches 0 is such a stretch, and no event; the slower it is then the smaller is what is not known.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from flint import arb, fmpq
 
-from wavesym.exact.contacts.branches import Branch
 from wavesym.exact.contacts.crossing import certain_rise, sign_after
-from wavesym.exact.contacts.guards import BranchEnd, lasts_until, value_range
+from wavesym.exact.contacts.guards import BranchEnd, lasts_until
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.spring_branches import FINER, OneSided
 from wavesym.exact.contacts.springs import CornerSpring
@@ -44,8 +43,7 @@ class Engaging(OneSided):
     @classmethod
     def begin_damped(cls, link: int, spring: CornerSpring, slowing: fmpq) -> Engaging:
         """At the start, where what is at its gap is taken for acting."""
-        closed = spring.gap <= 0
-        return cls(link, spring, arb(0), closed, slowing=slowing, _decision=Branch(closed))
+        return replace(cls.begin(link, spring), slowing=slowing)
 
     @property
     def may_close(self) -> bool:
@@ -72,7 +70,7 @@ class Engaging(OneSided):
         side = self._side(moved)
         if side == 0 and self._guard(moved).is_zero:
             return True
-        return (side > 0) == (self.link in moved.branches.closed)
+        return (side > 0) == self._is_closed(moved)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long it certainly does what it does; in doubt, until it should no longer be."""
@@ -86,13 +84,13 @@ class Engaging(OneSided):
             return self._doubt_end(moved, low, resolution)
         return None if end is None else BranchEnd(end.length, None)
 
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
+    def advance(self, moved: JointStretch) -> None:
         """Know its stretch at the end of one of time, and how long it may have been on its other branch.
 
         What is at rest at its gap, but for what counts for nothing, is on the branch that it was on before.
         """
-        self.doubt = self.doubt + length if self.link in moved.doubts else fmpq(0)
-        super().advance(moved, length)
+        self.doubt = self.doubt + moved.length if self.link in moved.doubts else fmpq(0)
+        super().advance(moved)
         self.longest = self.longest.max(abs(self.stretch).upper())
         if abs(self._beyond) < self.longest * _NOTHING:
             self.doubt = fmpq(0)
@@ -106,7 +104,7 @@ class Engaging(OneSided):
             sign = sign_after(guard.exact, fmpq(0))
         elif guard.onset is not None:
             sign = guard.onset.sign()
-        return sign if self.link in moved.branches.closed else -sign
+        return sign if self._is_closed(moved) else -sign
 
     def _is_in_doubt(self, moved: JointStretch) -> bool:
         return self._side(moved) == 0 and not self._guard(moved).is_zero
@@ -127,7 +125,7 @@ class Engaging(OneSided):
     @staticmethod
     def _is_steady(rate: Enclosure, length: fmpq, fast: arb) -> bool:
         """Whether it gets longer at no more than some times as fast as at the start of a stretch."""
-        return bool(value_range(rate, length).abs_upper() <= _FASTER * fast)
+        return bool(rate.evaluate_on(arb(0).union(arb(length))).abs_upper() <= _FASTER * fast)
 
     def _doubt_end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """Where it should be certain, were it as slow as its dashpot makes it; or where it gets much faster.

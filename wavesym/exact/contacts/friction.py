@@ -11,18 +11,20 @@ from wavesym.exact.contacts.corner import Corner
 from wavesym.exact.contacts.crossing import sign_after
 from wavesym.exact.contacts.guards import (
     BranchEnd,
-    begins_bearable,
-    begins_to_grow,
+    begins_with,
+    first_end,
     is_not_negative,
     is_positive,
     lasts_until,
     margins,
     spread,
-    value_range,
 )
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.joints.enclosure import Enclosure, add_terms
 from wavesym.numbers.doubles import middle
+
+UNCLEAR = Branch(closed=False)
+"""Friction of which it is not known whether it sticks, nor which way it slides."""
 
 
 @dataclass
@@ -35,20 +37,16 @@ class Friction(Corner):
     what is inert it is the middle of what is known, itself a motion under friction, whose signs count.
     """
 
-    link: int
     limit: fmpq
     inert: bool
     touching: bool
     rate: arb
-    sign: int
-    closed: bool
-    _decision: Branch
 
     @classmethod
     def begin(cls, link: int, limit: fmpq, inert: bool, touching: bool, rate: arb) -> Friction:
         """At the start: what is at rest sticks."""
-        sign = int(rate > 0) - int(rate < 0)
-        return cls(link, limit, inert, touching, rate, sign, sign == 0, Branch(sign == 0, sign))
+        now = sliding_branch(rate)
+        return cls(link, now, now, limit, inert, touching, rate)
 
     @property
     def may_close(self) -> bool:
@@ -58,12 +56,12 @@ class Friction(Corner):
     @property
     def is_held(self) -> bool:
         """What is inert, and may be at rest; else what sticks for certain."""
-        return bool(self.rate.contains(0)) if self.inert else self.sign == 0
+        return bool(self.rate.contains(0)) if self.inert else self.now.sign == 0
 
     @property
     def is_unclear(self) -> bool:
         """It is not known whether it sticks, nor which way it slides."""
-        return not self.closed and self.sign == 0 and not (self.inert and self.is_held)
+        return self.now == UNCLEAR and not (self.inert and self.is_held)
 
     @property
     def ways(self) -> tuple[int, ...]:
@@ -78,19 +76,19 @@ class Friction(Corner):
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is within its limits, or it goes the way it slides, just after the start."""
-        if self.link in moved.branches.closed:
-            return all(map(begins_bearable, self._margins(moved)))
+        if self._is_closed(moved):
+            return all(begins_with(margin, 0) for margin in self._margins(moved))
         forward = self._forward(moved)
-        if self.inert and self.closed and forward.begins is None:
+        if self.inert and self.now.closed and forward.begins is None:
             return sign_after(_middles(forward), fmpq(0)) > 0
-        return begins_to_grow(forward)
+        return begins_with(forward, 1)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long these are certainly not negative; what is inert sticks until its force is beyond its limits.
 
         Where it has just stopped, until it certainly is at rest: from then on it is known exactly how fast it is.
         """
-        if self.link not in moved.branches.closed:
+        if not self._is_closed(moved):
             forward = self._forward(moved)
             if not self.inert or forward.begins is not None:
                 return lasts_until(forward, low, moved.length, resolution)
@@ -100,9 +98,7 @@ class Friction(Corner):
             off = spread(forward, end.length)
             sure = end.length - 2 * off if self.touching else end.length
             return BranchEnd(sure if sure > low and forward.evaluate(sure) > 0 else end.length, off)
-        guards = self._margins(moved)
-        ends = [end for guard in guards if (end := lasts_until(guard, low, moved.length, resolution)) is not None]
-        end = min(ends, key=lambda end: end.length, default=None)
+        end = first_end(self._margins(moved), low, moved.length, resolution)
         if not self.rate.is_zero() and low == 0 < (rest := moved.rests.get(self.link, fmpq(0))):
             length = fmpq((rest / resolution).ceil() * resolution)
             if length < (moved.length if end is None else end.length):
@@ -119,37 +115,28 @@ class Friction(Corner):
 
         It is inert, and its rate is 0 but for what is not known of it.
         """
-        if not self.inert or not self.rate.is_zero() or self.link not in moved.branches.closed:
+        if not self.inert or not self.rate.is_zero() or not self._is_closed(moved):
             return 0
-        force = value_range(moved.pushes[self.link], moved.length)
+        force = moved.pushes[self.link].evaluate_on(moved.span)
         return int(force < -self.limit) - int(force > self.limit)
 
-    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch) -> bool:
         """Whether they are on all of a short stretch."""
-        if self.link in moved.branches.closed:
-            return self.inert or all(is_not_negative(margin, length) for margin in self._margins(moved))
-        return is_positive(self._forward(moved), length)
+        if self._is_closed(moved):
+            return self.inert or all(is_not_negative(margin, moved.length) for margin in self._margins(moved))
+        return is_positive(self._forward(moved), moved.length)
 
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
+    def advance(self, moved: JointStretch) -> None:
         """Know how fast it slides at the end of a stretch."""
-        if self.link in moved.branches.closed or self.link not in moved.rates:  # it may have done nothing but stick
-            self.rate, self.sign, self.closed = arb(0), 0, True
+        if self._is_closed(moved) or self.link not in moved.rates:  # it may have done nothing but stick
+            self.rate, self.now = arb(0), Branch(closed=True)
             return
-        self.rate = moved.rates[self.link].evaluate(length)
+        self.rate = moved.rates[self.link].evaluate(moved.length)
+        sliding = moved.branches.of_link(self.link)
         if self.link in moved.branches.vague:
-            self.sign, self.closed = 0, False
-        elif (sign := moved.branches.sliding.get(self.link, 0)) * self.rate > 0:  # it has certainly left rest
-            self.sign, self.closed = sign, False
-
-    @property
-    def branch(self) -> Branch:
-        """It sticks, or slides one way, or that was left open."""
-        return self._decision
-
-    def take(self, moved: JointStretch) -> None:
-        """Stick, or slide one way."""
-        self.sign, self.closed = moved.branches.sliding.get(self.link, 0), self.link in moved.branches.closed
-        self._decision = Branch(self.closed, self.sign)
+            self.now = UNCLEAR
+        elif sliding.sign * self.rate > 0:  # it has certainly left rest
+            self.now = sliding
 
     def _margins(self, moved: JointStretch) -> list[Enclosure]:
         """What is left of the limit either way."""
@@ -158,6 +145,12 @@ class Friction(Corner):
     def _forward(self, moved: JointStretch) -> Enclosure:
         """How fast it goes the way it slides."""
         return add_terms([(fmpq(moved.branches.sliding.get(self.link, 0)), moved.rates[self.link])])
+
+
+def sliding_branch(rate: arb) -> Branch:
+    """The branch of friction that slides at a rate; it sticks where that is not certain."""
+    sign = int(rate > 0) - int(rate < 0)
+    return Branch(sign == 0, sign)
 
 
 def _middles(known: Enclosure) -> fmpq_poly:

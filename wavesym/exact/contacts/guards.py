@@ -5,6 +5,7 @@ A guard is known as a polynomial within an error, sometimes exactly; what is sai
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from flint import arb, fmpq
@@ -30,22 +31,20 @@ def margins(limit: fmpq, force: Enclosure) -> list[Enclosure]:
     return [add_terms([(limit, UNIT), (fmpq(way), force)]) for way in (1, -1)]
 
 
-def begins_bearable(force: Enclosure) -> bool:
-    """Whether it is certainly not negative just after the start."""
-    if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
+def begins_with(known: Enclosure, sign: int) -> bool:
+    """Whether its sign just after the start is certainly this (0 or 1) at least."""
+    if known.least is not None and sign_after(known.least, fmpq(0)) >= sign:
         return True
     return all(
-        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
-        for each in force.choices or (force,)
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= sign
+        for each in known.choices or (known,)
     )
 
 
-def begins_to_grow(rate: Enclosure) -> bool:
-    """Whether it is certainly positive just after the start."""
-    return all(
-        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
-        for each in rate.choices or (rate,)
-    )
+def first_end(guards: Iterable[Enclosure], low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
+    """Up to where all of some functions that start well are certainly not negative; None: all the way."""
+    ends = (lasts_until(guard, low, high, resolution) for guard in guards)
+    return min((end for end in ends if end is not None), key=lambda end: end.length, default=None)
 
 
 def lasts_until(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
@@ -94,17 +93,13 @@ def spread(known: Enclosure, x: fmpq) -> fmpq:
     return min(map(middle, found), default=fmpq(0))
 
 
-def value_range(known: Enclosure, length: fmpq) -> arb:
-    """All values on a stretch."""
-    return known.evaluate_on(arb(0).union(arb(length)))
-
-
 def is_not_negative(known: Enclosure, length: fmpq) -> bool:
     """Whether a force is certainly not negative on a stretch."""
     if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
         return True
+    span = arb(0).union(arb(length))
     return all(
-        value_range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
+        each.evaluate_on(span) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
         for each in known.choices or (known,)
     )
 

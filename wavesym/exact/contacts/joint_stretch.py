@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
-from flint import fmpq
+from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Branches
 from wavesym.exact.contacts.cluster import PointState
@@ -49,6 +50,11 @@ class JointStretch:
     doubts: frozenset[int] = frozenset()
     swing: fmpq = field(default_factory=fmpq)
     fleeting: bool = False
+
+    @cached_property
+    def span(self) -> arb:
+        """All of its time, from 0 on."""
+        return arb(0).union(arb(self.length))
 
 
 class SwingError(Exception):

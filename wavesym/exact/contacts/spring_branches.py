@@ -6,7 +6,8 @@ true one as `springs.py` says. So there is always one choice, and one that goes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Self
 
 from flint import arb, fmpq, fmpq_poly
 
@@ -29,16 +30,13 @@ _TURNED = 2**32  # errors: what yielded comes back at a rate that was known less
 class _SpringCorner(Corner):
     """A spring with a corner, as time goes on: its stretch, and its branch when last decided."""
 
-    link: int
     spring: CornerSpring
     stretch: arb
-    closed: bool
-    sign: int = 0
 
     @property
     def is_held(self) -> bool:
         """It keeps to its branch."""
-        return self.closed
+        return self.now.closed
 
     @property
     def is_unclear(self) -> bool:
@@ -65,22 +63,13 @@ class _SpringCorner(Corner):
             return BranchEnd(since, None)
         return BranchEnd(certain, None, certain - since)
 
-    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch) -> bool:
         """Its branch is always taken."""
         return True
 
-    def advance(self, moved: JointStretch, length: fmpq) -> None:
+    def advance(self, moved: JointStretch) -> None:
         """Know its stretch at the end of one of time."""
-        self.stretch = moved.spring_motions[self.link].stretch.evaluate(length)
-
-    @property
-    def branch(self) -> Branch:
-        """It acts, or holds; or yields one way."""
-        return Branch(self.closed, self.sign)
-
-    def take(self, moved: JointStretch) -> None:
-        """Be on the branch that a stretch begins with."""
-        self.sign, self.closed = moved.branches.sliding.get(self.link, 0), self.link in moved.branches.closed
+        self.stretch = moved.spring_motions[self.link].stretch.evaluate(moved.length)
 
 
 @dataclass
@@ -91,35 +80,28 @@ class OneSided(_SpringCorner):
     not known (`TouchingJoint.move`), and `branch` stays what it was.
     """
 
-    _decision: Branch = field(default_factory=lambda: Branch(closed=False))
-
     @classmethod
-    def begin(cls, link: int, spring: CornerSpring) -> OneSided:
+    def begin(cls, link: int, spring: CornerSpring) -> Self:
         """At the start, where what is at its gap is taken for acting."""
-        closed = spring.gap <= 0
-        return cls(link, spring, arb(0), closed, _decision=Branch(closed))
+        now = Branch(spring.gap <= 0)
+        return cls(link, now, now, spring, arb(0))
 
     @property
     def may_close(self) -> bool:
         """Its stretch is not well within its gap."""
         return not _well_below(self.spring.side * self.stretch, arb(self.spring.gap))
 
-    @property
-    def branch(self) -> Branch:
-        """It acts or idles, whichever was certain last."""
-        return self._decision
-
     def begins(self, moved: JointStretch) -> bool:
         """Whether its guard does not become negative just after the start; where nothing tells, it idles."""
         if self._is_in_doubt(moved):
-            return self.link not in moved.branches.closed
+            return not self._is_closed(moved)
         return _begins(self._guard(moved), moved.length)
 
     def take(self, moved: JointStretch) -> None:
         """Be on the branch that a stretch begins with; in doubt, or at rest at its gap, still on the one before."""
-        super().take(moved)
+        self.now = moved.branches.of_link(self.link)
         if not (self._is_in_doubt(moved) or self._guard(moved).is_zero):
-            self._decision = Branch(self.closed)
+            self.branch = self.now
 
     def unseen_time(self, moved: JointStretch, resolution: fmpq) -> fmpq:
         """How long after the start of a stretch it is not yet seen that it is on its branch."""
@@ -143,7 +125,7 @@ class Yielding(_SpringCorner):
     @classmethod
     def begin(cls, link: int, spring: CornerSpring) -> Yielding:
         """At the start it holds."""
-        return cls(link, spring, arb(spring.start), True)
+        return cls(link, Branch(closed=True), Branch(closed=True), spring, arb(spring.start))
 
     @property
     def may_close(self) -> bool:
@@ -159,7 +141,7 @@ class Yielding(_SpringCorner):
     def begins(self, moved: JointStretch) -> bool:
         """Whether it is within its limits, or goes on the way that it yields, just after the start."""
         guards = moved.spring_motions[self.link].guards
-        if self.link not in moved.branches.closed:
+        if not self._is_closed(moved):
             return leaning(guards[0], moved.length) > 0
         return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1, _TURNED) > 0 for guard in guards)
 

@@ -138,7 +138,7 @@ class TouchingJoint(JointState):
         doubts = {n: force.min(most.get(n, force)) for n, force in self.springs.doubts(moved).items()}
         rates = self._resolve_doubts(moved, doubts, arriving) if doubts else {}
         self.springs.follow(moved, rates)
-        off, span = self.springs.wrong_forces(moved), arb(0).union(arb(moved.length))
+        off, span = self.springs.wrong_forces(moved), moved.span
         off |= {n: off[n].min(force) for n, force in most.items()}
         moved.doubts = frozenset(n for n in doubts if off[n] != 0)
         for n in moved.doubts:
@@ -154,7 +154,7 @@ class TouchingJoint(JointState):
         """
         if self.touches:
             return {}
-        law, span = self.law_with(self.springs.select(moved.branches.closed)), arb(0).union(arb(moved.length))
+        law, span = self.law_with(self.springs.select(moved.branches.closed)), moved.span
         known = {k: moved.velocities[k] for k in range(len(law.mass)) if k not in law.light}
         found = {}
         for n, spring in self.springs.of_link.items():
@@ -198,7 +198,7 @@ class TouchingJoint(JointState):
         that is not known is that of the dashpots, and makes the velocity smaller that it comes from. Besides these the
         forces of springs are wrong by their `doubts`. What else follows from velocities is known as closely then.
         """
-        span, points = arb(0).union(arb(moved.length)), range(len(self.law.mass))
+        span, points = moved.span, range(len(self.law.mass))
         acting = self.springs.select(moved.branches.closed)
         touching = moved.branches.closed - acting
         laws = [self.law_with(acting ^ other) for other in subsets(doubts)]
