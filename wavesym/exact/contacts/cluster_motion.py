@@ -12,9 +12,9 @@ from types import MappingProxyType
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Cluster, PointState
-from wavesym.exact.contacts.joint_springs import Displacements
 from wavesym.exact.contacts.joint_state import JointState
 from wavesym.exact.contacts.joint_stretch import JointStretch
+from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosure import STILL, Enclosure, Onset, Terms, add_terms, combine
 from wavesym.exact.joints.joint_motion import JointMotion
 
@@ -25,7 +25,7 @@ class ClusterMotion:
     """A cluster on a stretch, under `forces` on the points of its joint; what moves as is given moves as is `acting`.
 
     Its velocities, forces and state at the end become part of the `result`; `places` are the displacements of its
-    points meanwhile, where they matter.
+    points meanwhile, exact or in balls, where they matter.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class ClusterMotion:
             for a, each in enumerate(self.prescribed)
             if self.law.motions[a] is not None
         }
-        self.places: Displacements | None = None
+        self.places: Mapping[int, fmpq_poly] | JointMotion | None = None
 
     # the start
 
@@ -167,9 +167,18 @@ class ClusterMotion:
     def strain(self) -> None:
         """How springs with a corner get longer; and what all springs pull, where dashpots act with some."""
         springs = self.joint.springs
-        springs.strain(self.cluster, self.result, self.places)
+        springs.strain(self.result, {n: self._extension(springs.of_link[n]) for n in self.cluster.springs})
         if springs.may_idle:
             self.result.elastic |= {k: self.spring_pull(k) for k in self.points}
+
+    def _extension(self, spring: CornerSpring) -> Enclosure:
+        """How far apart the points are of a spring that acts, beyond what they were at tau = 0."""
+        places = self.places
+        assert places is not None
+        if not isinstance(places, JointMotion):
+            return Enclosure.from_polynomial(places[spring.right] - spring.ratio * places[spring.left])
+        left, right = (arb_poly(places.places[self.points.index(k)]) for k in spring.sides)
+        return Enclosure(right - arb(spring.ratio) * left, (places.spring_error / arb(spring.stiffness).sqrt()).upper())
 
     # the end
 

@@ -9,8 +9,8 @@ from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Closed
 from wavesym.exact.contacts.cluster import Cluster, PointState, Touch, connected_sets
-from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import JointStretch
+from wavesym.exact.contacts.springs import JointSprings
 from wavesym.exact.joints.enclosure import UNIT, Terms
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.network import Network

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Branches
 from wavesym.exact.contacts.cluster import PointState
-from wavesym.exact.contacts.springs import SpringMotion, SpringState
 from wavesym.exact.joints.enclosure import Enclosure, Terms
+
+if TYPE_CHECKING:
+    from wavesym.exact.contacts.springs import SpringMotion, SpringState
 
 MOST_SWING = fmpq(20)
 """A series is begun anew where it would have to bear more than exp(this): few bits cancel in it then."""

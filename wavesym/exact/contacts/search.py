@@ -16,10 +16,9 @@ from wavesym.exact.contacts.breakaway import Breakaway
 from wavesym.exact.contacts.corner import Contact, Corner
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course
-from wavesym.exact.contacts.engaging import Engaging
 from wavesym.exact.contacts.friction import Friction
 from wavesym.exact.contacts.joint_stretch import MOST_SWING
-from wavesym.exact.contacts.spring_branches import OneSided, Yielding
+from wavesym.exact.contacts.spring_corners import Engaging, OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import TouchingWaves
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network

@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.branches import Branches, Closed
-from wavesym.exact.contacts.choices import ChoiceMotions, near_first
 from wavesym.exact.contacts.cluster import Cluster, subsets
 from wavesym.exact.contacts.joint_state import JointState
 from wavesym.exact.contacts.joint_stretch import JointStretch, SwingError
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.contacts.steady_motion import SteadyMotion
-from wavesym.exact.contacts.vague_motion import VagueMotion
+from wavesym.exact.contacts.vague_motion import ChoiceMotions, VagueMotion, near_first
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, collect
 from wavesym.exact.joints.joint_law import JointLaw, exact_sum, forces_on, outgoing_terms, scatter
 from wavesym.exact.joints.network_waves import LoadPolynomial
