@@ -309,7 +309,7 @@ def test_waves_that_contacts_were_found_with_are_those_of_the_chain_moved_anew()
     known = room.schedule(model.network, model.loads, last)
     assert known.changes
     with ctx.workprec(2 * known.bits):
-        anew = room.replay(model.network, known.stages, known.ends, model.loads)
+        anew = room.replay(model.network, known.stages, known.breakpoints, model.loads)
     for bits in (64, 256):
         kept = room.waves(model.network, model.loads, known, bits)
         for end, wave in kept.sent.items():

@@ -14,9 +14,8 @@ from wavesym.errors import CostError
 from wavesym.exact.contacts.course import Course
 from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.enclosure import ORDER, Onset, combine
-from wavesym.exact.joints.exact_motion import onsets
 from wavesym.exact.joints.joint_law import JointLaw
-from wavesym.exact.joints.joint_series import motion_series
+from wavesym.exact.joints.joint_series import motion_series, onsets
 from wavesym.exact.reference import Reference
 from wavesym.programs.pieces import pieces
 

@@ -238,7 +238,7 @@ def test_more_bits_are_had_from_the_stretches_that_were_found() -> None:
     known = contact_schedule(model, model.until)
     assert known is not None
     with ctx.workprec(2 * BITS):
-        anew = room.replay(model.network, known.stages, known.ends, model.loads)
+        anew = room.replay(model.network, known.stages, known.breakpoints, model.loads)
         for end, wave in known.waves.sent.items():
             until = known.ends[model.network.joint_of[model.network.point_at(end)]]
             for tau in (until * k / 41 for k in range(40)):

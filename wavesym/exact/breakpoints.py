@@ -92,9 +92,7 @@ class Breakpoints:
         if self._windowed:
             return dict.fromkeys(self._last, self._windows)
         if (known := self.schedule) is not None:
-            return {
-                number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
-            }
+            return known.breakpoints
         return self._natural if not self.cut else self._with_cuts()
 
     @cached_property

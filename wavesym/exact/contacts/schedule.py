@@ -56,6 +56,11 @@ class Schedule:
     waves: TouchingWaves
     bits: int
 
+    @property
+    def breakpoints(self) -> Mapping[int, Sequence[fmpq]]:
+        """The starts of the stages of every joint, and the end of the last one."""
+        return {number: [*(stage.start for stage in each), self.ends[number]] for number, each in self.stages.items()}
+
 
 def schedule(network: Network, loads: tuple[AppliedLoad, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
     """What happens at the joints, each until its last instant.
@@ -96,7 +101,7 @@ def waves(network: Network, loads: tuple[AppliedLoad, ...], known: Schedule, bit
     with ctx.workprec(bits):
         if bits <= known.bits:
             return known.waves.round_to_precision(known.ends)
-        return replay(network, known.stages, known.ends, loads)
+        return replay(network, known.stages, known.breakpoints, loads)
 
 
 def _attempt(
@@ -131,31 +136,28 @@ def _attempt(
         if not attempts and undecided.tau - reached > _FURTHER * search.width and bits < _MOST_BITS:
             attempts.append((2 * bits, False))
         reached = undecided.tau
-    link = network.links[undecided.link]
-    tau = f"{nearest(undecided.tau):.17g}"
+    raise _grazing_error(network, undecided, bits)
+
+
+def _grazing_error(network: Network, undecided: UndecidedError, bits: int) -> GrazingError:
+    """What so many bits do not show, where and when, and what helps."""
+    link, shown = network.links[undecided.link], f"{bits} bits do not show"
+    others = ""
     if undecided.chatters:
-        raise GrazingError(
-            f"{link.law} at {link.place}: changes its branch {CHATTER} times within no time at tau = {tau}, as others "
-            "do theirs (another limit, load or length helps)"
-        )
-    if link.friction != 0:
-        raise GrazingError(
-            f"friction at {link.place}: {bits} bits do not show whether it sticks or slips at tau = {tau} "
-            "(another friction, load or length helps)"
-        )
-    if link.is_spring_with_corner:
-        raise GrazingError(
-            f"spring at {link.place}: {bits} bits do not show what it does at tau = {tau} "
-            "(another gap, yield, load or length helps)"
-        )
-    what = "force" if undecided.closed else "gap"
-    beside = next(joint.points for joint in network.joints if link.left in joint.points)
-    rubs = any(each.friction != 0 and each.left in beside for each in network.links)
-    helps = "a rod between it and friction" if rubs else "heavier masses beside it"
-    raise GrazingError(
-        f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = {tau} "
-        f"(another gap, load or length, or {helps}, help)"
-    )
+        what, others = f"changes its branch {CHATTER} times within no time", ", as others do theirs"
+        change = "limit, load or length helps"
+    elif link.friction != 0:
+        what, change = f"{shown} whether it sticks or slips", "friction, load or length helps"
+    elif link.is_spring_with_corner:
+        what, change = f"{shown} what it does", "gap, yield, load or length helps"
+    else:
+        what = f"{shown} the sign of its {'force' if undecided.closed else 'gap'}"
+        beside = next(joint.points for joint in network.joints if link.left in joint.points)
+        rubs = any(each.friction != 0 and each.left in beside for each in network.links)
+        other = "a rod between it and friction" if rubs else "heavier masses beside it"
+        change = f"gap, load or length, or {other}, help"
+    tau = f"{nearest(undecided.tau):.17g}"
+    return GrazingError(f"{link.law} at {link.place}: {what} at tau = {tau}{others} (another {change})")
 
 
 def _whole(search: Search) -> Schedule:

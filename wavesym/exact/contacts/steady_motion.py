@@ -18,9 +18,9 @@ from wavesym.exact.contacts.cluster_motion import ONE, ClusterMotion
 from wavesym.exact.contacts.friction_stops import find_rests, find_ways, slips, way_of
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, SwingError
 from wavesym.exact.joints.enclosure import Enclosure, Onset, Terms, add_terms, with_bounds
-from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint_law import bound_sum, scatter
 from wavesym.exact.joints.joint_motion import JointMotion
+from wavesym.exact.joints.joint_series import exact_motion, onsets
 
 _ROUNDS = 4  # in which a bound of what slips must hold
 _MISSED = 16  # bits: what has died away is that much more than rounding errors, at most

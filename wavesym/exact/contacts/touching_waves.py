@@ -6,7 +6,6 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
 from operator import itemgetter
 
 from flint import fmpq, fmpq_poly
@@ -15,7 +14,7 @@ from wavesym.exact.contacts.branches import Branches
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.touching_joint import TouchingJoint
 from wavesym.exact.joints.enclosure import Enclosure, add_terms
-from wavesym.exact.joints.network_waves import SentWave, Waves
+from wavesym.exact.joints.network_waves import SentWave, Waves, stretches_in_order
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Network
 
@@ -94,21 +93,16 @@ def _goes_on(old: fmpq_poly, by: fmpq, new: fmpq_poly) -> bool:
 
 
 def replay(
-    network: Network, stages: Mapping[int, Sequence[Stage]], ends: Mapping[int, fmpq], loads: Sequence[AppliedLoad]
+    network: Network,
+    stages: Mapping[int, Sequence[Stage]],
+    breakpoints: Mapping[int, Sequence[fmpq]],
+    loads: Sequence[AppliedLoad],
 ) -> TouchingWaves:
-    """The waves at the working precision, where the stages of all joints are known."""
+    """The waves at the working precision, from the stages of all joints and the breakpoints between these."""
     waves = TouchingWaves(network, stages, loads)
-    coming = [(stage[0].start, number, 0) for number, stage in stages.items() if stage]
-    heapify(coming)
-    while coming:
-        start, number, place = heappop(coming)
-        stage = stages[number][place]
-        last = place + 1 == len(stages[number])
-        length = (ends[number] if last else stages[number][place + 1].start) - start
-        joint, arriving = waves.joints[number], waves.arriving(number, start, length)
-        moved = joint.move(arriving, start, length, stage.branches)
+    for start, number, place, end in stretches_in_order(breakpoints):
+        joint, arriving = waves.joints[number], waves.arriving(number, start, end - start)
+        moved = joint.move(arriving, start, end - start, stages[number][place].branches)
         waves.record(number, start, moved)
         joint.take(moved)
-        if not last:
-            heappush(coming, (start + length, number, place + 1))
     return waves

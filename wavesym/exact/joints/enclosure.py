@@ -2,7 +2,7 @@
 
 Balls cannot tell how a function leaves 0. But what is at rest, or moves as is known exactly, begins with powers that
 are rational, whatever comes later: f(w) = c_0 + c_1 w + ... + c_(n-1) w^(n-1) + r, |r| <= beyond w^n. For small w the
-first of these that is not 0 has the last word, and coarse bounds of derivatives tell how small (`exact_motion`).
+first of these that is not 0 has the last word, and coarse bounds of derivatives tell how small (`joint_series`).
 
 Sums with exact factors keep what is known: that they are exact, begin as an exact function does, lie on one side of
 one, or are one of a few functions at each instant.

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from heapq import heapify, heappop, heappush
+from heapq import merge
+from itertools import count, repeat
 
 from flint import arb, fmpq, fmpq_poly
 
@@ -117,6 +118,11 @@ class Waves:
         return waves
 
 
+def stretches_in_order(breakpoints: Mapping[int, Sequence[fmpq]]) -> Iterator[tuple[fmpq, int, int, fmpq]]:
+    """The stretches of joints between breakpoints, as they start: their starts, joints, places and ends."""
+    return merge(*(zip(times, repeat(n), count(), times[1:], strict=False) for n, times in breakpoints.items()))
+
+
 class NetworkWaves(Waves):
     """The waves of the joints whose breakpoints are given, at the working precision; their `derivatives`, too."""
 
@@ -133,20 +139,10 @@ class NetworkWaves(Waves):
         if derivatives:
             self.rates = {end: SentWave(list(wave.starts), [STILL]) for end, wave in self.sent.items()}
             self.accelerations = {point: SentWave() for point in self.velocities}
-        self._breakpoints = breakpoints
         self._terms = terms
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in breakpoints}
-        self._march()
-
-    def _march(self) -> None:
-        coming = [(times[0], number, 0) for number, times in self._breakpoints.items() if times]
-        heapify(coming)
-        while coming:
-            start, number, place = heappop(coming)
-            times = self._breakpoints[number]
-            if place + 1 < len(times):
-                heappush(coming, (times[place + 1], number, place + 1))
-                self._move(number, start, times[place + 1] - start)
+        for start, number, _, end in stretches_in_order(breakpoints):
+            self._move(number, start, end - start)
 
     def _move(self, number: int, start: fmpq, length: fmpq) -> None:
         joint = self.network.joints[number]

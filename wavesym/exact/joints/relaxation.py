@@ -80,25 +80,30 @@ def settling_gap(law: JointLaw, length: fmpq) -> RateGap | None:
 
 @dataclass(frozen=True, eq=False)
 class Relaxation:
-    """The slow part of a joint's law, at the working precision at which it was made.
+    """The slow part of a joint's law, that is below a gap of its rates, at the working precision at which it was made.
 
-    Args:
-        slow: the largest rate of what is slow, about; 0 where nothing moves.
-        fast: the least rate of what decays fast, about.
+    With P and R of this module's docstring these are Q and S, A P, P B, R, R B, and P.
     """
 
-    slow: fmpq
-    fast: fmpq
-    _heavy: tuple[int, ...]
-    _has_springs: bool
-    _motions: tuple[str | None, ...]
+    gap: RateGap
+    _law: JointLaw
+    _output: arb_mat
+    _feedthrough: arb_mat
     _generator: arb_mat
     _input: arb_mat
     _inverse: arb_mat
     _quasistatic: arb_mat
     _projector: arb_mat
-    _read: arb_mat
-    _feedthrough: arb_mat
+
+    @property
+    def slow(self) -> fmpq:
+        """The largest rate of what is slow, about; 0 where nothing moves."""
+        return self.gap.slow
+
+    @property
+    def fast(self) -> fmpq:
+        """The least rate of what decays fast, about."""
+        return self.gap.fast
 
     @classmethod
     def separate(cls, law: JointLaw) -> tuple[Relaxation, ...]:
@@ -106,24 +111,19 @@ class Relaxation:
         if len(law.moves) > _POINTS or not (law.heavy or law.springs):
             return ()
         system = _state_space(law)
-        return tuple(cls._parting(law, system, gap) for gap in reversed(_gaps(system[0])))
+        return tuple(cls._below(gap, law, *system) for gap in reversed(_gaps(system[0])))
 
     @classmethod
-    def _parting(
-        cls,
-        law: JointLaw,
-        system: tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat],
-        gap: RateGap,
+    def _below(
+        cls, gap: RateGap, law: JointLaw, a: fmpq_mat, b: fmpq_mat, output: fmpq_mat, through: fmpq_mat
     ) -> Relaxation:
-        """What is below a gap from what is above it."""
-        slow, fast, fastest, _ = gap
-        a, b, read, through = system
+        """What is below a gap of a law in the first order."""
         size, bits = a.nrows(), ctx.prec + _SPARE
-        low, high = log2(max(float(slow), float(fast) / _FAR)), log2(float(fast))
+        low, high = log2(max(float(gap.slow), float(gap.fast) / _FAR)), log2(float(gap.fast))
         step = round((low + high) / 2)
         between = fmpq(2) ** step
         doublings = ceil(log2(bits / min(high - step, step - low)))
-        with ctx.workprec(2 * bits + int(2**doublings * log2(float(fastest / between)))):
+        with ctx.workprec(2 * bits + int(2**doublings * log2(float(gap.fastest / between)))):
             one = arb_mat(fmpq_mat(size, size, [int(i == j) for i in range(size) for j in range(size)]))
             power = arb_mat(a / between)
             for _ in range(doublings):
@@ -133,21 +133,9 @@ class Relaxation:
             exact = arb_mat(a)
             generator = (exact * projector).mid()
             inverse = ((exact - generator + projector).inv() * (one - projector)).mid()
-            driven, quasistatic = projector * arb_mat(b), inverse * arb_mat(b)
-        return cls(
-            slow,
-            fast,
-            law.heavy,
-            law.springs,
-            law.motions,
-            _generator=_round(generator),
-            _input=_round(driven),
-            _inverse=_round(inverse),
-            _quasistatic=_round(quasistatic),
-            _projector=_round(projector),
-            _read=arb_mat(read),
-            _feedthrough=arb_mat(through),
-        )
+            found = [generator, projector * arb_mat(b), inverse, inverse * arb_mat(b), projector]
+        rounded = ((each * 1).mid() for each in found)  # at the working precision
+        return cls(gap, law, arb_mat(output), arb_mat(through), *rounded)
 
     def serves(self, length: fmpq, terms: int) -> bool:
         """Whether what is fast is so fast that its coefficients do not grow, in so many terms on such a stretch."""
@@ -164,12 +152,13 @@ class Relaxation:
         """The coefficients of the velocities of groups, and the displacements of points at the start."""
         acting = [
             force if motion is None else given
-            for motion, force, given in zip(self._motions, forces, prescribed, strict=True)
+            for motion, force, given in zip(self._law.motions, forces, prescribed, strict=True)
         ]
         inputs = arb_mat([[each[n] for n in range(terms)] for each in acting])
         driven, quasistatic = (self._input * inputs).mid(), (self._quasistatic * inputs).mid()
         size = self._generator.nrows()
-        state = [velocity[k] for k in self._heavy] + (list(displacement) if self._has_springs else [])
+        heavy, elastic = self._law.heavy, self._law.springs
+        state = [velocity[k] for k in heavy] + (list(displacement) if elastic else [])
         slow = [(self._projector * _column(state)).mid()]
         for n in range(terms - 1):
             slow.append(((self._generator * slow[n] + _matrix_column(driven, n)) * (arb(1) / (n + 1))).mid())
@@ -178,16 +167,9 @@ class Relaxation:
             fast[n] = (self._inverse * fast[n + 1] * (n + 1) - _matrix_column(quasistatic, n)).mid()
         found = [(slow[n] + fast[n]).mid() for n in range(terms)]
         states = arb_mat([[each[k, 0] for each in found] for k in range(size)])
-        velocities = (self._read * states + self._feedthrough * inputs).mid()
-        places = (
-            [states[len(self._heavy) + k, 0] for k in range(len(displacement))] if self._has_springs else displacement
-        )
+        velocities = (self._output * states + self._feedthrough * inputs).mid()
+        places = [states[len(heavy) + k, 0] for k in range(len(displacement))] if elastic else displacement
         return [list(row) for row in velocities.tolist()], list(places)
-
-
-def _round(matrix: arb_mat) -> arb_mat:
-    """To the middles, at the working precision."""
-    return (matrix * 1).mid()
 
 
 def _column(values: Sequence[arb]) -> arb_mat:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpq_series
 
 from wavesym.derivation.factors import factor_weights
 from wavesym.derivation.increments import Increment, add, solve, trim
@@ -131,18 +131,10 @@ def partial_fractions(above: fmpq_poly, below: fmpq_poly) -> tuple[fmpq, dict[fm
         rate = factor[0] / factor[1]
         near = fmpq_poly([-rate, 1])
         # of below, the first `power` coefficients are 0 there
-        top, bottom = above(near), fmpq_poly(below(near).coeffs()[power:])
-        series = _quotient(top, bottom, power)
-        parts[rate] = series[::-1]
+        bottom = fmpq_poly(below(near).coeffs()[power:])
+        series = fmpq_series(above(near), prec=power) / fmpq_series(bottom, prec=power)
+        parts[rate] = [series[k] for k in reversed(range(power))]
     return whole[0], parts
-
-
-def _quotient(above: fmpq_poly, below: fmpq_poly, count: int) -> list[fmpq]:
-    """The first coefficients of the quotient of two power series."""
-    found: list[fmpq] = []
-    for k in range(count):
-        found.append((above[k] - sum((below[k - n] * c for n, c in enumerate(found)), _ZERO)) / below[0])
-    return found
 
 
 def _free(law: JointLaw) -> tuple[int, ...]:
