@@ -68,13 +68,13 @@ def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
         for n, link in links.items():
             stages = known.stages[model.network.joint_of[link.left]]
             if n in damped:
-                rate = _Rate(seen["velocity", link.left], seen["velocity", link.right], link.ratio)
+                rate = _LinkMotion(seen["velocity", link.left], seen["velocity", link.right], link.ratio)
                 work = arb(link.damping) * _engaged_square(n, stages, until, rate, known.vague * _BRIEF)
                 other = found.pop() if found and _is_other_side(found[-1].link, link) else None
                 found.append(LinkLoss(link, arb(0), work + (other.dissipated if other else 0)))
             if n not in losing:
                 continue
-            stretch = _Stretch(seen["displacement", link.left], seen["displacement", link.right], link.ratio)
+            stretch = _LinkMotion(seen["displacement", link.left], seen["displacement", link.right], link.ratio)
             slides = _slides(n, stages, until)
             before = [stage.start for stage in stages if slides and stage.start <= slides[0][1]]
             gives_way = all(_bears_nothing(link, sign) for sign, *_ in slides) and _is_unstrained(link, stretch, before)
@@ -82,32 +82,25 @@ def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
         return tuple(found)
 
 
-class _Rate(NamedTuple):
-    """How fast a link gets longer, by the velocities of its ends."""
-
-    left: Balls
-    right: Balls
-    ratio: fmpq
-
-    def square(self, low: fmpq, high: fmpq) -> arb:
-        """The integral of its square from one instant to another."""
-        starts = (segment.start for balls in (self.left, self.right) for segment in balls.segments)
-        total = arb(0)
-        for start, end in pairwise(sorted({low, high, *(start for start in starts if low < start < high)})):
-            rate = self.right.polynomial_from(start) - arb(self.ratio) * self.left.polynomial_from(start)
-            total += (rate * rate).integral()(arb(end - start))
-        return total
-
-
-class _Stretch(NamedTuple):
-    """How much longer a link is than at tau = 0, by the displacements of its ends."""
+class _LinkMotion(NamedTuple):
+    """How much longer a link is than at tau = 0, or how fast it gets longer, by what its ends do."""
 
     left: Balls
     right: Balls
     ratio: fmpq
 
     def evaluate(self, tau: fmpq) -> arb:
+        """The value at an instant."""
         return self.right.evaluate(tau) - arb(self.ratio) * self.left.evaluate(tau)
+
+    def integrate_square(self, low: fmpq, high: fmpq) -> arb:
+        """The integral of its square from one instant to another."""
+        starts = (segment.start for balls in (self.left, self.right) for segment in balls.segments)
+        total = arb(0)
+        for start, end in pairwise(sorted({low, high, *(start for start in starts if low < start < high)})):
+            value = self.right.polynomial_from(start) - arb(self.ratio) * self.left.polynomial_from(start)
+            total += (value * value).integral()(arb(end - start))
+        return total
 
 
 def _probe(model: Model, quantity: str, point: int) -> Probe:
@@ -120,14 +113,14 @@ def _is_other_side(one: Link, other: Link) -> bool:
     return one.side != 0 and (one.left, one.right, -one.side) == (other.left, other.right, other.side)
 
 
-def _engaged_square(number: int, stages: Sequence[Stage], until: fmpq, rate: _Rate, brief: fmpq) -> arb:
+def _engaged_square(number: int, stages: Sequence[Stage], until: fmpq, rate: _LinkMotion, brief: fmpq) -> arb:
     """The integral of the square of a rate while a spring acts, which it may also do while it idles `brief`ly."""
     ends, total = [*(stage.start for stage in stages), until], arb(0)
     for stage, (low, high) in zip(stages, pairwise(ends), strict=True):
         if number in stage.branches.closed and low < high:
-            total += rate.square(low, high)
+            total += rate.integrate_square(low, high)
         elif low < high <= low + brief:
-            total += rate.square(low, high).union(arb(0))
+            total += rate.integrate_square(low, high).union(arb(0))
     return total
 
 
@@ -146,7 +139,7 @@ def _bears_nothing(link: Link, sign: int) -> bool:
     return push > 0 == pull if sign > 0 else pull > 0 == push
 
 
-def _is_unstrained(link: Link, stretch: _Stretch, taus: Sequence[fmpq]) -> bool:
+def _is_unstrained(link: Link, stretch: _LinkMotion, taus: Sequence[fmpq]) -> bool:
     """Whether a spring without a preload bears at most `_NOTHING` of its limit at all of some tau and between."""
     if not taus or link.limits is None or link.preload != 0:
         return False
@@ -155,7 +148,7 @@ def _is_unstrained(link: Link, stretch: _Stretch, taus: Sequence[fmpq]) -> bool:
     return all(abs(stretch.evaluate(tau)) < allowed for tau in places)
 
 
-def _loss(link: Link, slides: list[tuple[int, fmpq, fmpq]], stretch: _Stretch) -> LinkLoss:
+def _loss(link: Link, slides: list[tuple[int, fmpq, fmpq]], stretch: _LinkMotion) -> LinkLoss:
     pull, push = link.limits or (link.friction, link.friction)
     total, work = arb(0), arb(0)
     for sign, low, high in slides:

@@ -146,8 +146,7 @@ class Cluster:
                 else:
                     mass = sum((ratio**2 * law.mass[k] for k, ratio in among), fmpq(0))
                     pushes[n] += [(k, -share * heavier / mass * ratio) for k, ratio in among]
-        local = {k: n for n, k in enumerate(points)}
-        grouped = law.restrict(points).group([members[k] for k in points], [local[k] for k in leaders])
+        grouped = law.group(points, members, leaders)
         stuck = tuple(k for k in heavy if k not in leaders)
         return cls(tuple(points), grouped, pushes, law, inertia, stuck, springs)
 

@@ -63,9 +63,10 @@ class Cost:
                 self._lasting.append(start)
         for starts, most in ((self._starts, MOST_STAGES), (self._series, MOST_SERIES)):
             if len(starts) > most:
+                causes, helps = self._causes(events)
                 raise CostError(
-                    f"output.until: {self._causes(events)} make more than {most} stretches by tau = "
-                    f"{nearest(start):g}, the limit is {most} ({self._helps} help)"
+                    f"output.until: {causes} make more than {most} stretches by tau = {nearest(start):g}, the limit is "
+                    f"{most} ({helps} help)"
                 )
         if moved.swing > 0:
             self._refuse_series(self._lasting, _RECKONED, events)
@@ -115,34 +116,22 @@ class Cost:
         return len(fronts) * (1 + (nearest(self._until) - last) / (last - half) / 2)
 
     def _refusal(self, count: int, start: fmpq, reckoned: fmpq, most: int, events: int) -> CostError:
+        causes, helps = self._causes(events)
         return CostError(
-            f"output.until: {self._causes(events)} make {count} stretches by tau = {nearest(start):g}, which "
-            f"would be {nearest(reckoned):.1e} by tau = {nearest(self._until):g}, the limit is {most} "
-            f"({self._helps} help)"
+            f"output.until: {causes} make {count} stretches by tau = {nearest(start):g}, which would be "
+            f"{nearest(reckoned):.1e} by tau = {nearest(self._until):g}, the limit is {most} ({helps} help)"
         )
 
-    def _causes(self, events: int) -> str:
-        """What makes stretches."""
-        other = f"fronts and {events} openings and closings of contacts"
-        if not self._is_fast(number := self._busiest):
-            return other
-        place = self._network.points[self._network.joints[number].points[0]].place
-        rate = nearest(self._swings[number])
-        return f"what swings or decays{place and ' at '}{place} at a rate of {rate:.3g}, {other}"
-
-    @property
-    def _helps(self) -> str:
-        if self._is_fast(self._busiest):
-            return "heavier bodies, or joints with dashpots in place of light ones, softer springs or a shorter horizon"
-        return "a shorter horizon, lengths with a larger common measure, or springs in place of thin rods"
-
-    @property
-    def _busiest(self) -> int:
-        """The joint with most stretches."""
-        return max(self._last, key=lambda number: self._stretches[number])
-
-    def _is_fast(self, number: int) -> bool:
-        """Whether stretches of a joint are cut short by what swings, not by fronts."""
-        ends = self._network.joints[number].ends
-        longest = min((self._network.bars[end.bar].delay for end, _ in ends), default=self._last[number])
-        return self._swings.get(number, fmpq(0)) * longest > MOST_SWING
+    def _causes(self, events: int) -> tuple[str, str]:
+        """What makes stretches, and what helps: where the joint with most stretches swings fast, less of that."""
+        causes = f"fronts and {events} openings and closings of contacts"
+        number = max(self._last, key=lambda number: self._stretches[number])
+        joint, swing = self._network.joints[number], self._swings.get(number, fmpq(0))
+        longest = min((self._network.bars[end.bar].delay for end, _ in joint.ends), default=self._last[number])
+        if swing * longest <= MOST_SWING:
+            return causes, "a shorter horizon, lengths with a larger common measure, or springs in place of thin rods"
+        place = self._network.points[joint.points[0]].place
+        return (
+            f"what swings or decays{place and ' at '}{place} at a rate of {nearest(swing):.3g}, {causes}",
+            "heavier bodies, or joints with dashpots in place of light ones, softer springs or a shorter horizon",
+        )

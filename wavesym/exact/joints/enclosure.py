@@ -247,20 +247,36 @@ def one_at_each_instant(functions: Sequence[Enclosure], span: arb) -> Enclosure:
     )
 
 
-def shift(known: Enclosure, by: fmpq) -> Enclosure:
-    """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.has_bounds):
+def shift(known: Enclosure, by: fmpq, brief: fmpq | None = None) -> Enclosure:
+    """The same function in the time since an instant that is `by` later.
+
+    On a `brief` stretch it has Taylor's first powers, and what the others can add.
+    """
+    terms = 2 + ctx.prec // 64 if brief is not None else known.polynomial.length()
+    is_long = known.polynomial.length() > terms and known.exact is None
+    if not is_long and (by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.has_bounds)):
         return known
     if known.exact is not None:
         return Enclosure.from_polynomial(known.exact(fmpq_poly([by, 1])))
-    choices = tuple(shift(each, by) for each in known.choices)
-    least, most = _shift_bounds(known, by)
-    return Enclosure(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
-
-
-def _shift_bounds(known: Enclosure, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    choices = tuple(shift(each, by, brief) for each in known.choices)
     least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
-    return least, most
+    polynomial, error = known.polynomial, known.error
+    if brief is None or not is_long:
+        polynomial = polynomial(arb_poly([arb(by), 1]))
+    else:
+        polynomial, rest = _expand(polynomial, by, brief, terms)
+        error = (error + rest).upper()
+    return Enclosure(polynomial, error, None, choices, None, least, most)
+
+
+def _expand(polynomial: arb_poly, by: fmpq, length: fmpq, terms: int) -> tuple[arb_poly, arb]:
+    """The first Taylor coefficients at a place, and what all others can add on a stretch from there on."""
+    here, derivative, powers, share = arb(by), polynomial, [], arb(1)
+    for n in range(1, terms):
+        powers.append(derivative(here) * share)
+        derivative, share = derivative.derivative(), share / n
+    rest = abs(derivative(here.union(arb(by + length))) * share) * arb(length) ** (terms - 1)
+    return arb_poly(powers), rest
 
 
 def round_to_precision(known: Enclosure, length: fmpq) -> Enclosure:
@@ -284,19 +300,3 @@ def shorten(known: Enclosure, length: fmpq) -> Enclosure:
     if count == len(powers):
         return known
     return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
-
-
-def shift_briefly(known: Enclosure, by: fmpq, length: fmpq) -> Enclosure:
-    """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
-    terms = 2 + ctx.prec // 64
-    if known.exact is not None or known.polynomial.length() <= terms:
-        return shift(known, by)
-    choices = tuple(shift_briefly(each, by, length) for each in known.choices)
-    here, derivative, powers, share = arb(by), known.polynomial, [], arb(1)
-    for n in range(1, terms):
-        powers.append(derivative(here) * share)
-        derivative, share = derivative.derivative(), share / n
-    span = here.union(arb(by + length))
-    rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
-    least, most = _shift_bounds(known, by)
-    return Enclosure(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

@@ -87,32 +87,26 @@ class JointLaw:
         """Whether springs act on a point."""
         return any(c != 0 for c in self.stiffness[k])
 
-    def restrict(self, points: Sequence[int]) -> JointLaw:
-        """The law of some points that nothing connects with the others."""
-        return JointLaw(
-            tuple(self.mass[k] for k in points),
-            tuple(tuple(self.damping[k][j] for j in points) for k in points),
-            tuple(tuple(self.stiffness[k][j] for j in points) for k in points),
-            tuple(self.motions[k] for k in points),
-        )
+    def group(self, points: Sequence[int], members: Mapping[int, tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
+        """The law of some points that nothing connects with the others, where they move in groups.
 
-    def group(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
-        """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
-        of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
+        Args:
+            points: which of these points.
+            members: the group of each, and how fast it moves in it.
+            leaders: the points that groups move like.
+        """
+        of = [[(k, members[k][1]) for k in points if members[k][0] == a] for a in range(len(leaders))]
         return JointLaw(
             tuple(sum((x * x * self.mass[k] for k, x in row), fmpq(0)) for row in of),
             tuple(
                 tuple(sum((x * y * self.damping[k][j] for k, x in row for j, y in column), fmpq(0)) for column in of)
                 for row in of
             ),
-            tuple(
-                tuple(sum((x * self.stiffness[k][j] for k, x in row), fmpq(0)) for j in range(len(members)))
-                for row in of
-            ),
+            tuple(tuple(sum((x * self.stiffness[k][j] for k, x in row), fmpq(0)) for j in points) for row in of),
             tuple(self.motions[k] for k in leaders),
-            tuple(members),
-            tuple(leaders),
-            self.stiffness,
+            tuple(members[k] for k in points),
+            tuple(points.index(k) for k in leaders),
+            tuple(tuple(self.stiffness[k][j] for j in points) for k in points),
             any(sum(self.mass[k] != 0 for k, _ in row) > 1 for row in of),
         )
 

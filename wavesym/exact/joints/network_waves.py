@@ -17,7 +17,6 @@ from wavesym.exact.joints.enclosure import (
     collect,
     round_to_precision,
     shift,
-    shift_briefly,
     shorten,
     weighted_sum,
 )
@@ -112,7 +111,7 @@ class Waves:
             if length is None:
                 waves.append(shift(known, offset))
             elif length < _BRIEF:
-                waves.append(shift_briefly(known, offset, length))
+                waves.append(shift(known, offset, length))
             else:
                 waves.append(shorten(shift(known, offset), length))
         return waves

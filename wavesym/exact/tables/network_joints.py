@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, cached_property
 
 from flint import fmpq
@@ -34,20 +35,13 @@ class NetworkJoints:
         network.refuse_corners()
         network.refuse_dead_loads()
         self.network = network
-        self._responses: dict[int, JointResponse] = {}
+        # of a joint M, C and K, its ends of bars, and what it answers
+        self.law: Callable[[int], JointLaw] = cache(lambda number: JointLaw.assemble(network, network.joints[number]))
+        self.ends: Callable[[int], tuple[JointEnd, ...]] = cache(lambda n: joint_ends(network, network.joints[n]))
+        self.response: Callable[[int], JointResponse] = cache(self._response)
 
-    @cache  # noqa: B019 - as long as this object
-    def law(self, number: int) -> JointLaw:
-        """M, C and K."""
-        return JointLaw.assemble(self.network, self.network.joints[number])
-
-    def response(self, number: int) -> JointResponse:
+    def _response(self, number: int) -> JointResponse:
         """What a joint answers. UnservedError, with its polynomial, where that does not split over the rationals."""
-        if number not in self._responses:
-            self._responses[number] = self._compute_response(number)
-        return self._responses[number]
-
-    def _compute_response(self, number: int) -> JointResponse:
         law = self.law(number)
         if (count := len(law.mass)) > MOST_POINTS:
             raise UnservedError(
@@ -68,11 +62,6 @@ class NetworkJoints:
         points = [self.network.points[joint.points[k]] for k in sorted((*law.heavy, *law.light))]
         names = [point.name or f"x = {point.place}" for point in points]
         return ", ".join(names[:MOST_NAMES]) + (f" and {left} more" if (left := len(names) - MOST_NAMES) > 0 else "")
-
-    @cache  # noqa: B019 - as long as this object
-    def ends(self, number: int) -> tuple[JointEnd, ...]:
-        """The ends of bars at a joint."""
-        return joint_ends(self.network, self.network.joints[number])
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
