@@ -144,8 +144,8 @@ class CornerSpring(Pair):
     def steady_motion(self, stretch: Enclosure, acts: bool) -> SpringMotion:
         """A stretch of time on which it acts, or holds; or idles."""
         if self.side != 0:
-            way = fmpq(self.side if acts else -self.side)
-            return SpringMotion(stretch, (add_terms([(way, stretch), (-way * self.rest, UNIT)]),))
+            way = fmpq(1 if acts else -1)
+            return SpringMotion(stretch, (add_terms([(way * self.side, stretch), (-way * self.gap, UNIT)]),))
         most, least = self.most
         guards = (add_terms([(most, UNIT), (fmpq(-1), stretch)]), add_terms([(-least, UNIT), (fmpq(1), stretch)]))
         return SpringMotion(stretch, guards)
