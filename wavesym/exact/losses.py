@@ -117,7 +117,7 @@ def _engaged_square(number: int, stages: Sequence[Stage], until: fmpq, rate: _Li
     """The integral of the square of a rate while a spring acts, which it may also do while it idles `brief`ly."""
     ends, total = [*(stage.start for stage in stages), until], arb(0)
     for stage, (low, high) in zip(stages, pairwise(ends), strict=True):
-        if number in stage.branches.closed and low < high:
+        if number in stage.branches.closed_links and low < high:
             total += rate.integrate_square(low, high)
         elif low < high <= low + brief:
             total += rate.integrate_square(low, high).union(arb(0))

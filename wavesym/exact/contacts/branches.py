@@ -31,13 +31,13 @@ class Branches:
     Some are closed, some slide or yield one way; of those that are vague it is left open.
     """
 
-    closed: Closed = frozenset()
+    closed_links: Closed = frozenset()
     sliding: Mapping[int, int] = field(default_factory=dict)
     vague: Closed = frozenset()
 
     def of_link(self, link: int) -> Branch:
         """That of one which is not vague."""
-        return Branch(link in self.closed, self.sliding.get(link, 0))
+        return Branch(link in self.closed_links, self.sliding.get(link, 0))
 
 
 @dataclass(frozen=True)

@@ -133,7 +133,7 @@ class Breakaway(Corner):
         """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
         if self._rest is not None:
             self._rest.time += moved.length
-            others = (moved.branches.closed | moved.branches.vague) - {self.link}
+            others = (moved.branches.closed_links | moved.branches.vague) - {self.link}
             if others or moved.branches.sliding:
                 self._rest = None
         if self._is_closed(moved):

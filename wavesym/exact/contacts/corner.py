@@ -83,7 +83,7 @@ class Corner(ABC):
 
     def _is_closed(self, moved: JointStretch) -> bool:
         """Whether it is closed on a stretch."""
-        return self.link in moved.branches.closed
+        return self.link in moved.branches.closed_links
 
 
 @dataclass

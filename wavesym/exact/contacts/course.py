@@ -187,7 +187,7 @@ class Course:
     def _decide(self, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of branches that is certainly right just after `start`, and its end."""
         for branches in self._choices():
-            if not self._joint.may_join(branches.closed, start):
+            if not self._joint.may_join(branches.closed_links, start):
                 continue
             moved = self._move(start, limit - start, branches, trial=True)
             if all(corner.begins(moved) for corner in self._corners):

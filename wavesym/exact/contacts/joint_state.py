@@ -55,7 +55,7 @@ class JointState:
         springs = self.springs.select(closed)
         law, touching = self.law_with(springs), closed - springs
         return [
-            Cluster.from_law(law, points, self.touches, touching, self.springs.among(springs, points))
+            Cluster.from_law(law, points, self.touches, touching, self.springs.select_between(springs, points))
             for points in connected_sets(law, self.touches, touching | vague)
         ]
 

@@ -193,7 +193,7 @@ class JointSprings:
         """Of what is closed, springs."""
         return closed.intersection(self.of_link)
 
-    def among(self, links: Closed, points: Sequence[int]) -> Closed:
+    def select_between(self, links: Closed, points: Sequence[int]) -> Closed:
         """Of these springs, those between some points."""
         return frozenset(n for n in links if self.of_link[n].left in points)
 
@@ -243,7 +243,7 @@ class JointSprings:
     def strain_others(self, result: JointStretch) -> None:
         """How those that do not act get longer, as the velocities of all points are known."""
         for n, spring in self.of_link.items():
-            if n not in result.branches.closed:
+            if n not in result.branches.closed_links:
                 state, rate, sign = self._state[n], spring.rate(result.velocities), result.branches.sliding.get(n, 0)
                 if sign:
                     moving = spring.yielding_motion(state, sign, rate, result.length)
@@ -254,7 +254,7 @@ class JointSprings:
     def follow(self, result: JointStretch, rates: Mapping[int, Enclosure]) -> None:
         """Know how these get longer from how fast, which is known more closely than of their points."""
         for n, rate in rates.items():
-            stretch, acts = self._state[n].grow(rate, result.length), n in result.branches.closed
+            stretch, acts = self._state[n].grow(rate, result.length), n in result.branches.closed_links
             self._note(n, result, self.of_link[n].steady_motion(stretch, acts), result.springs[n].shift)
 
     @staticmethod

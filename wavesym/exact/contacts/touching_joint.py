@@ -103,7 +103,7 @@ class TouchingJoint(JointState):
         self.springs.add_pulls(forces, branches)
         result = JointStretch(length, branches, acting=list(forces))
         self.springs.add_unknown(forces, unknown)
-        clusters = self.clusters(branches.closed, branches.vague)
+        clusters = self.clusters(branches.closed_links, branches.vague)
         for cluster in clusters:
             if any(self.touches[n].left in cluster.points for n in branches.vague):
                 VagueMotion(self, cluster, result, forces, acting).move(arriving)
@@ -116,7 +116,7 @@ class TouchingJoint(JointState):
         for n, touch in self.touches.items():
             if all(self.points[k].exact is not None for k in touch.sides):
                 result.exact_contacts.add(n)
-            if n not in branches.closed | branches.vague:
+            if n not in branches.closed_links | branches.vague:
                 result.rates[n] = add_terms(touch.rate_terms(result.velocities))
         for number, (end, wave) in enumerate(zip(self.ends, arriving, strict=True)):
             if number not in result.sends:
@@ -153,23 +153,23 @@ class TouchingJoint(JointState):
         """
         if self.touches:
             return {}
-        law, span = self.law_with(self.springs.select(moved.branches.closed)), moved.span
+        law, span = self.law_with(self.springs.select(moved.branches.closed_links)), moved.span
         known = {k: moved.velocities[k] for k in range(len(law.mass)) if k not in law.light}
         found = {}
         for n, spring in self.springs.of_link.items():
-            if spring.side == 0 or n in moved.branches.closed or unknown.get(n, arb(0)) == 0:
+            if spring.side == 0 or n in moved.branches.closed_links or unknown.get(n, arb(0)) == 0:
                 continue
             if (lightness := self._spring_lightness(spring, law)) == 0:
                 continue
             both = {m for m, other in self.springs.of_link.items() if other.is_opposite(spring)}  # one at a time
-            forces = self._pulled(moved, {m: force for m, force in unknown.items() if m != n and m not in both})
+            forces = self._pull_forces(moved, {m: force for m, force in unknown.items() if m != n and m not in both})
             q = scatter(law, forces, known)
             driven = spring.side * spring.rate(dict(enumerate(q))).evaluate_on(span)
             farthest = driven.upper() / arb(lightness * spring.stiffness)
             found[n] = self.springs.reach_beyond(n).max(farthest.upper())
         return found
 
-    def _pulled(self, moved: JointStretch, unknown: Mapping[int, arb]) -> list[Terms]:
+    def _pull_forces(self, moved: JointStretch, unknown: Mapping[int, arb]) -> list[Terms]:
         """What acts on points, with what springs pull, but for such forces of some."""
         forces = [[*terms, (-_ONE, moved.elastic[k])] for k, terms in enumerate(moved.acting)]
         self.springs.add_unknown(forces, unknown)
@@ -198,13 +198,13 @@ class TouchingJoint(JointState):
         forces of springs are wrong by their `doubts`. What else follows from velocities is known as closely then.
         """
         span, points = moved.span, range(len(self.law.mass))
-        acting = self.springs.select(moved.branches.closed)
-        touching = moved.branches.closed - acting
+        acting = self.springs.select(moved.branches.closed_links)
+        touching = moved.branches.closed_links - acting
         laws = [self.law_with(acting ^ other) for other in subsets(doubts)]
         together = Cluster.from_law(laws[0], points, self.touches, touching)
         known = {k: moved.velocities[k] for k in points if self.law.mass[k] != 0 or self.law.motions[k] is not None}
         settled = {k: moved.velocities[k] for k in points if together.leader(k) in known}
-        forces = self._pulled(moved, doubts)
+        forces = self._pull_forces(moved, doubts)
         found = ChoiceMotions(self, laws, points, touching, moved.branches.vague, forces, known, settled, span)
         if not together.stuck_points:
             free = found.of_points([k for k in points if k not in settled])

@@ -35,7 +35,7 @@ class VagueMotion(ClusterMotion):
         """Move it, under all that its contacts may do."""
         joint, cluster, result, span = self.joint, self.cluster, self.result, self.span
         inside = {n for n, touch in joint.touches.items() if touch.left in self.points}
-        vague, closed = result.branches.vague & inside, result.branches.closed & inside
+        vague, closed = result.branches.vague & inside, result.branches.closed_links & inside
         touches = {n: joint.touches[n] for n in vague}
         pressing = [n for n, touch in touches.items() if touch.friction == 0]
         bounds = {n: arb(0) for n in pressing}
@@ -120,7 +120,7 @@ class VagueMotion(ClusterMotion):
 
     def _bound_sends(self, arriving: Sequence[Enclosure]) -> None:
         """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
-        closed, vague = self.result.branches.closed, self.result.branches.vague
+        closed, vague = self.result.branches.closed_links, self.result.branches.vague
         for alone in self.joint.clusters(closed, frozenset()):
             if not set(alone.points) <= set(self.points):
                 continue

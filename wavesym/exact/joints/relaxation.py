@@ -111,10 +111,10 @@ class Relaxation:
         if len(law.moves) > _POINTS or not (law.heavy or law.springs):
             return ()
         system = _state_space(law)
-        return tuple(cls._below(gap, law, *system) for gap in reversed(_gaps(system[0])))
+        return tuple(cls._separate_at(gap, law, *system) for gap in reversed(_gaps(system[0])))
 
     @classmethod
-    def _below(
+    def _separate_at(
         cls, gap: RateGap, law: JointLaw, a: fmpq_mat, b: fmpq_mat, output: fmpq_mat, through: fmpq_mat
     ) -> Relaxation:
         """What is below a gap of a law in the first order."""
