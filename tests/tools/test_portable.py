@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -21,13 +22,14 @@ from tools.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.running.toolchain import CompilerError, compiler
 
 PAGE = "docs/portability.md"
-PIECES, MODEL, BATCH, BOUND = (
+PIECES, MODEL, BATCH, BOUND, STREAM = (
     next(subject for subject in PROVED if (subject.name, subject.driver) == key)
     for key in (
         ("pieces_double", "values"),
         ("runtime_brief_double", "runtime"),
         ("runtime_brief_double", "batch"),
         ("runtime_brief_double", "bound"),
+        ("stream_double", "stream"),
     )
 )
 (SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
@@ -60,11 +62,15 @@ def written(subject, folder):
     return subject
 
 
-# since loads of streams may change anywhere on a panel, and brief models are followed degree by degree
-NOT_PROVED = {
-    *(f"{name}_{real}" for name in ("stream", "tuned", "joints_brief") for real in ("double", "single")),
-    "runtime_brief_double",
-}
+def proved(subject, folder):
+    """What the prover says of it, with what it is told besides."""
+    for file, text in subject.files().items():
+        (folder / file).write_text(prove.annotate(subject, text))
+    return prove.verdict(subject, 1, "gcc_x86_64", folder)
+
+
+# rows that are to be written anew, for functions that have other names now
+NOT_PROVED = {"joints_brief_double", "joints_brief_single", "runtime_brief_double"}
 
 
 def rows_of(name, head):
@@ -78,6 +84,29 @@ def test_the_page_says_what_was_proved():
     assert [row[0] for row in rows] == [subject.name for subject in PROVED]
     # of the others the page says that nothing is proved; none may join them
     assert {row[0] for row in rows if row[-1] != "0"} <= NOT_PROVED
+
+
+FUNCTIONS = ("-inline-calls", "-eva-slevel-function", "-eva-split-return-function")
+
+
+@pytest.mark.parametrize("subject", {(one.name, one.driver): one for one in PROVED}.values(), ids=lambda one: one.name)
+def test_the_prover_is_told_of_functions_that_there_are(subject):
+    """It refuses a program, and takes no notice of an annotation, where there is none of that name."""
+    command = prove.command(subject)
+    told = {
+        name.partition(":")[0]
+        for option, names in pairwise(command)
+        if option in FUNCTIONS
+        for name in names.split(",")
+    }
+    text = subject.files()[f"{subject.name}.c"]
+    defined = set(re.findall(r"(?m)^\w.*?\b(?:OF\()?(\w+)\)?\([^;\n]*$", text)) | {"main"}
+    assert told <= defined | {f"{name}_batch" for name in re.findall(r"(?m)^\w.*?\bOF\((\w+)\)\(", text)}
+    annotated = prove.annotate(subject, text)
+    for function in prove.SPLITS.get(subject.effort, {}):
+        assert re.search(rf"{function}\)?\([^{{;]*\{{\n    //@ split", annotated)
+    for function in prove.PROMISES.get(subject.effort, {}):
+        assert re.search(rf"/\*@ ensures [^\n]*\nstatic int {function}\(", annotated)
 
 
 def test_the_page_has_a_reason_for_each_rule():
@@ -177,6 +206,9 @@ def test_no_optimisation_makes_a_warning(subject, optimised, tmp_path):
         (MODEL, "b->place += (size_t)", "b->place += 2 * (size_t)"),
         (MODEL, "event < RUNTIME_BRIEF_DOUBLE_EVENTS && event_window", "event_window"),
         (BATCH, "set >= 0 && set <", "set <"),
+        (STREAM, "breakpoints < STREAM_DOUBLE_BREAKPOINTS", "breakpoints <= STREAM_DOUBLE_BREAKPOINTS"),
+        (STREAM, "if (silent <= DEEPEST)", "if (silent >= 0)"),  # goes up for ever
+        (STREAM, "slot < 0 ? slot + slots[number] : slot", "slot"),  # into what is before waves
         (BOUND, "x_size[RUNTIME_BRIEF_DOUBLE_WIDEST], s[", "x_size[RUNTIME_BRIEF_DOUBLE_WIDEST - 1], s["),
     ],
 )
@@ -184,11 +216,11 @@ def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):
     """In programs without an alarm of their own: one of many would say nothing."""
     (stated,) = (
         row[-1]
-        for row, proved in zip(rows_of("prove", prove.HEAD), PROVED, strict=True)
-        if (proved.name, proved.driver) == (subject.name, subject.driver)
+        for row, one in zip(rows_of("prove", prove.HEAD), PROVED, strict=True)
+        if (one.name, one.driver) == (subject.name, subject.driver)
     )
     assert stated == "0"
-    found = prove.verdict(written(Spoilt(subject, right, wrong), tmp_path), 1, "gcc_x86_64", tmp_path)
+    found = proved(Spoilt(subject, right, wrong), tmp_path)
     assert found.alarms is not None
     assert found.alarms > 0
 
@@ -196,7 +228,7 @@ def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):
 @needs_prover
 @pytest.mark.slow
 def test_nothing_undefined_is_found_in_one_program(tmp_path):
-    found = prove.verdict(written(PIECES, tmp_path), 1, "gcc_x86_64", tmp_path)
+    found = proved(PIECES, tmp_path)
     assert (found.alarms, found.alarm_texts) == (0, [])
 
 

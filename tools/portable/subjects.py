@@ -102,7 +102,7 @@ _MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), e
 _BLOCKS_MARCH = PortableProgram(
     "blocks", "damped_building", Request("march"), "values", _COUNTS, (("output.until", 6),), effort="more"
 )
-_MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
+_MODES = PortableProgram("modes", _BUILDING, Request("modes"), "steps", changes=tuple(_SHAKEN.items()), effort="more")
 _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )

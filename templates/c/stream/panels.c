@@ -105,18 +105,25 @@ static int drop_small_waves(stream *state, int breakpoint)
 /* What has gone on from the breakpoints of this panel is at them again; where nothing is left of it, their place is free. */
 static void continue_breakpoints(stream *state)
 {
-    int *place = state->first_breakpoint + state->phase;
-    while (*place >= 0) {
-        const int after = *place;
+    int before = NONE;
+    int after = state->first_breakpoint[state->phase];
+    while (after >= 0) {
+        const int next = state->next_breakpoint[after];
         step_joints(state, after, NULL);
-        state->silent[after] = drop_small_waves(state, after) ? 0 : state->silent[after] + 1;
-        if (state->silent[after] > DEEPEST) {
-            *place = state->next_breakpoint[after];
+        const int silent = drop_small_waves(state, after) ? 0 : state->silent[after] + 1;
+        if (silent <= DEEPEST) {
+            state->silent[after] = silent;
+            before = after;
+        } else {
+            if (before >= 0) {
+                state->next_breakpoint[before] = next;
+            } else {
+                state->first_breakpoint[state->phase] = next;
+            }
             state->next_breakpoint[after] = state->spare;
             state->spare = after;
-        } else {
-            place = state->next_breakpoint + after;
         }
+        after = next;
     }
 }
 

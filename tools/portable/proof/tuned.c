@@ -5,7 +5,7 @@ volatile int any_choice;
 
 int main(void)
 {
-    /*@ widen_hints global:"all", 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 32, 64; */
+    /*@ widen_hints global:"all", -2, -1, 0, 1, NAME_PANELS - 1, NAME_PANELS, NAME_BREAKPOINTS - 1, NAME_BREAKPOINTS; */
     static name_state state;
     static name_parameters parameters;
     name_real load[NAME_LOADS];
