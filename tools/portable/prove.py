@@ -96,7 +96,7 @@ def annotate(subject: PortableProgram, text: str) -> str:
         text = re.sub(head, rf"\g<1>    //@ split {number};\n    ;\n", text)
     for function, promise in PROMISES.get(subject.effort, {}).items():
         contract = f"/*@ ensures {subject.instantiate(promise)}; */"
-        text = re.sub(rf"(?m)^static int {function}\(", lambda head, told=contract: f"{told}\n{head[0]}", text)
+        text = text.replace(f"\nstatic int {function}(", f"\n{contract}\nstatic int {function}(")
     return text
 
 
