@@ -71,7 +71,10 @@ PROMISES = {
     }
 }
 """Of an effort what functions return, which is to be proved where a pointer would go from one array into the next."""
-SPLITS = {"bounds": {"run": "section", "accumulate_term": "degree"}}
+SPLITS = {
+    "unrolled": {"accumulate_term": "degree"},
+    "bounds": {"run": "section", "accumulate_term": "degree"},
+}
 """Of an effort the functions that are followed for each value of one of their numbers by itself."""
 
 
