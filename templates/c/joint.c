@@ -66,13 +66,18 @@ static real step_body(const real *rows, const real *p, real initial, real *q)
     return q[0] + (last_sum - rows[LOSS] * q[0]);
 }
 
-/* A block: to velocities of its points, followed by x at the end less x, is added what acts on them makes, followed by x. */
-static void step_block(const real *columns, const real *given, real *velocities, int width)
+/* A block: velocities of its points, followed by x at the end less x, from `count` numbers that act on its points, and x. */
+static void step_block(const real *columns, const real *acting, int count, const real *x, int states, real *velocities)
 {
-    for (int k = 0; k < width; ++k) {
-        if (!(given[k] == 0)) { /* as where loads alone act */
-            add(velocities, given[k], columns + k * width, width);
+    const int width = count + states;
+    clear(velocities, width);
+    for (int k = 0; k < count; ++k) {
+        if (!(acting[k] == 0)) { /* as where loads alone act */
+            add(velocities, acting[k], columns + k * width, width);
         }
+    }
+    for (int k = 0; k < states; ++k) {
+        add(velocities, x[k], columns + (count + k) * width, width);
     }
 }
 
@@ -109,15 +114,11 @@ static void step_joint(int joint, const joint_on_panel *on, const real *acting, 
         given[SIZE] = 0;
         *x = step_body(on->table, given, *x, velocities);
     } else if (BLOCKS > 0) {
-        const int width = points * SIZE + states;
-        real *const gained = velocities + points * SIZE;
-        clear(velocities, width);
+        const int count = points * SIZE;
+        step_block(on->table, given, count, x, states, velocities);
         for (int k = 0; k < states; ++k) {
-            given[points * SIZE + k] = x[k];
-        }
-        step_block(on->table, given, velocities, width);
-        for (int k = 0; k < states; ++k) {
-            x[k] += gained[k];
+            given[count + k] = x[k];
+            x[k] += velocities[count + k];
         }
     }
     for (int port = first; port < first_port[joint + 1]; ++port) {

@@ -24,7 +24,11 @@ LOADED = re.compile(r"ld(?:r|p|ur)\s+(q\d+)(?:, q\d+)?, \[(?:sp|x29)(?:, (-?\d+)
 SPILLED = re.compile(r"^\t(?:st|ld)(?:r|p|ur)\s+q\d+.*%sfp", re.M)
 FUNCTION = re.compile(r"^(\w+)[.\w]*:\n(.*?)^\t\.size\t\1[.\w]*,", re.M | re.S)
 # where gcc takes up to two numbers at once by itself: sums and addresses around a call that sets memory to 0
-LEFT = {("stream_double", "-O2"): {"stream_double_step"}, ("blocks_double", "-O3"): {"advance"}}
+LEFT = {
+    ("stream_double", "-O2"): {"stream_double_step"},
+    ("blocks_double", "-O3"): {"advance"},
+    ("blocks_single", "-O3"): {"advance"},
+}
 
 
 def version():
