@@ -28,6 +28,8 @@ LEFT = {
     ("stream_double", "-O2"): {"stream_double_step"},
     ("blocks_double", "-O3"): {"advance"},
     ("blocks_single", "-O3"): {"advance"},
+    ("mode_sets_double", "-O2"): {"read_output"},
+    ("mode_sets_double", "-O3"): {"read_output"},
 }
 
 
