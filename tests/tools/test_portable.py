@@ -201,6 +201,8 @@ def test_no_optimisation_makes_a_warning(subject, optimised, tmp_path):
         (MODEL, "b->place += (size_t)", "b->place += 2 * (size_t)"),
         (MODEL, "event < RUNTIME_BRIEF_DOUBLE_EVENTS && event_window", "event_window"),
         (BATCH, "set >= 0 && set <", "set <"),
+        (STREAM, "breakpoints < STREAM_DOUBLE_BREAKPOINTS", "breakpoints <= STREAM_DOUBLE_BREAKPOINTS"),
+        (STREAM, "if (silent <= DEEPEST)", "if (silent >= 0)"),  # goes up for ever
         (STREAM, "slot < 0 ? slot + slots[number] : slot", "slot"),  # into what is before waves
         (BOUND, "x_size[RUNTIME_BRIEF_DOUBLE_WIDEST], s[", "x_size[RUNTIME_BRIEF_DOUBLE_WIDEST - 1], s["),
     ],
