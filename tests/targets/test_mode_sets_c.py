@@ -249,14 +249,41 @@ def test_it_compiles_without_warnings(tmp_path, language, options):
     assert (tmp_path / "frame.o").stat().st_size > 0
 
 
+def selftest_status(folder, texts, scene):
+    """What the self-test of a scene's files returns."""
+    name = scene.name
+    for file, text in texts.items():
+        (folder / file).write_text(text)
+    compiler().run(["-std=c99", "-O1", f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
+    return subprocess.run([folder / "selftest"], check=False).returncode
+
+
 @pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", [RAYLEIGH, SPRUNG, FRAME], ids=["rayleigh", "sprung", "frame"])
 def test_its_selftest_passes(tmp_path, scene):
-    name = scene.name
-    for file, text in program_files(scene).items():
-        (tmp_path / file).write_text(text)
-    compiler().run(["-std=c99", "-O1", f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], tmp_path)
-    assert subprocess.run([tmp_path / "selftest"], check=False).returncode == 0
+    assert selftest_status(tmp_path, program_files(scene), scene) == 0
+
+
+STREAMS = pytest.mark.parametrize(
+    "scene",
+    [FRAME, pytest.param(RAYLEIGH, marks=pytest.mark.slow), pytest.param(SPRUNG, marks=pytest.mark.slow)],
+    ids=["frame", "rayleigh", "sprung"],
+)
+
+
+@STREAMS
+def test_the_selftest_of_a_stream_passes(tmp_path, scene):
+    texts = program_files(scene, runtime=names_of(lower(scene)), stream=True)
+    assert selftest_status(tmp_path, texts, scene) == 0
+
+
+def test_the_selftest_of_a_stream_sees_a_step_that_is_wrong(tmp_path):
+    """A load that acts as if it had been there all through a step."""
+    texts = program_files(FRAME, runtime=("stiffness",), stream=True)
+    held = "slope[j] = (now[j] - s->load[j]) / spacing;"
+    assert texts["frame.c"].count(held) == 1
+    texts["frame.c"] = texts["frame.c"].replace(held, "s->load[j] = now[j], slope[j] = 0;")
+    assert selftest_status(tmp_path, texts, FRAME) == 1
 
 
 def loaded(scene, **options):

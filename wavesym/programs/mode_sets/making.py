@@ -20,7 +20,16 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.parameters import ModeParameters, SampledAmplitudes, mode_parameters, sampled_amplitudes
 from wavesym.programs.modes.evaluator import driven_inputs, modes
 from wavesym.programs.modes.modal_system import LANES, padded_count
-from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, ReferenceValues
+from wavesym.programs.modes.stepping import SteppedModes
+from wavesym.programs.program import (
+    Input,
+    Program,
+    ProgramOutput,
+    Provenance,
+    ReferenceValues,
+    SteppedRow,
+    SteppedValues,
+)
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.tables import Tables, firsts
@@ -68,6 +77,11 @@ def mode_sets_program(
     parameters = mode_parameters(model, request.runtime, amplitudes)
     parameters.like.refuse()
     return ModeSetsTables(parameters, request.stream).program(request, tested=tested)
+
+
+def _values(proved: SteppedModes, tau_max: float) -> ReferenceValues:
+    taus = np.linspace(0.0, tau_max, _CHECKED)
+    return ReferenceValues(tuple(taus.tolist()), tuple(map(tuple, proved.evaluate(taus).tolist())))
 
 
 @dataclass(frozen=True)
@@ -144,13 +158,26 @@ class ModeSetsTables:
         """With values of the scene's own numbers by modes that are proved to leave out next to nothing."""
         model = self.parameters.model
         proved = modes(replace(model, tolerance=model.tolerance / _FINER), DOUBLE)
-        taus = np.linspace(0.0, made.tau_max, _CHECKED)
-        values = proved.scheme.evaluate(taus)
         outputs = tuple(
             replace(output, largest=exact.largest) for output, exact in zip(made.outputs, proved.outputs, strict=True)
         )
-        reference = ReferenceValues(tuple(taus.tolist()), tuple(map(tuple, values.tolist())))
+        reference = self._stepped_values(proved.scheme) if self.streamed else _values(proved.scheme, made.tau_max)
         return replace(made, outputs=outputs, reference=reference)
+
+    def _stepped_values(self, proved: SteppedModes) -> SteppedValues:
+        """What a stream gives under the scene's own loads, at some of their samples up to the last one."""
+        spacing, tau_max = nearest(self.amplitudes.step), self.parameters.model.horizon()
+        sizes = np.array([nearest(given.size) for given in self._inputs])
+        loads = self.amplitudes.samples[1:] * sizes
+        last = min(len(loads), int(tau_max / spacing))
+        checked = np.unique(np.linspace(1, last, min(last, _CHECKED)).astype(int))
+        values = dict(zip(checked.tolist(), proved.evaluate(spacing * checked).T.tolist(), strict=True))
+        return SteppedValues(
+            tuple(
+                SteppedRow(spacing, tuple(row), tuple(values.get(k, ())))
+                for k, row in enumerate(loads[:last].tolist(), 1)
+            )
+        )
 
     def _constants(self) -> dict[str, float]:
         like, model = self.parameters.like, self.parameters.model

@@ -6,9 +6,9 @@ from importlib import import_module
 from typing import Any
 
 from wavesym.errors import UnservedError
-from wavesym.programs.program import Program, ReferenceValues, SteppedValues
+from wavesym.programs.program import Program
 from wavesym.targets.c.plain import header
-from wavesym.targets.c.selftest import selftest, stepped_selftest
+from wavesym.targets.c.selftest import selftests
 from wavesym.targets.description import Description
 
 HAS_SELFTEST = True
@@ -26,13 +26,8 @@ def files(description: Description, program: Program) -> dict[str, str]:
         made: dict[str, str] = kernel.files(description, program)
         return made
     name = description.name
-    made = {
+    return {
         f"{name}.h": header(description, program, kernel.streaming(description, program) if program.step else ""),
         f"{name}.c": kernel.source(description, program),
+        **selftests(description, program),
     }
-    match program.reference:
-        case ReferenceValues():
-            made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
-        case SteppedValues():
-            made[f"{name}_selftest.c"] = stepped_selftest(description, program, program.reference)
-    return made

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from wavesym.programs.program import Program, ReferenceValues
+from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import parameter_fields
-from wavesym.targets.c.selftest import selftest
+from wavesym.targets.c.selftest import selftests
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
@@ -38,10 +38,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         model=kernel("mode_sets/model.h", scene),
         owner=f"{scene.name}_state *state" if streamed else f"{scene.name}_model *model",
     )
-    made = {f"{scene.name}.h": header, f"{scene.name}.c": source}
-    if isinstance(program.reference, ReferenceValues):
-        made[f"{scene.name}_selftest.c"] = selftest(scene, program, program.reference)
-    return made
+    return {f"{scene.name}.h": header, f"{scene.name}.c": source, **selftests(scene, program)}
 
 
 def sets(scene: Description, program: Program) -> dict[str, str]:

@@ -12,13 +12,13 @@ from flint import fmpq, fmpq_mpoly
 
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
-from wavesym.programs.program import Program, ReferenceValues
+from wavesym.programs.program import Program
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, products
 from wavesym.programs.runtime.network import ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.memory import Memory
-from wavesym.targets.c.selftest import selftest
+from wavesym.targets.c.selftest import selftests
 from wavesym.targets.c.tables import program_tables, sizes
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_literal, c_literals
@@ -95,10 +95,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         stack=tuple(_stack_sizes(scene, program.parts, memory, inside)),
         structs=text,
     )
-    made = {f"{scene.name}.h": header, f"{scene.name}.c": source}
-    if isinstance(program.reference, ReferenceValues):
-        made[f"{scene.name}_selftest.c"] = selftest(scene, program, program.reference)
-    return made
+    return {f"{scene.name}.h": header, f"{scene.name}.c": source, **selftests(scene, program)}
 
 
 def _one_set(scene: Description) -> str:

@@ -17,7 +17,17 @@ _ORIGINS = {"mode_sets": "of modes that are proved to leave out next to nothing"
 _LENIENT = 10  # times the error that is estimated, where no bound is proved: what is right comes nowhere near it
 
 
-def selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
+def selftests(scene: Description, program: Program) -> dict[str, str]:
+    """NAME_selftest.c where a program has reference values, step by step for a stream; nothing where it has none."""
+    match program.reference:
+        case ReferenceValues():
+            return {f"{scene.name}_selftest.c": _selftest(scene, program, program.reference)}
+        case SteppedValues():
+            return {f"{scene.name}_selftest.c": _stepped_selftest(scene, program, program.reference)}
+    return {}
+
+
+def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
     """The program that holds the C of a program against reference values: doubles whatever the program's type is.
 
     What takes parameters is `built` with the scene's own.
@@ -43,7 +53,7 @@ def selftest(scene: Description, program: Program, reference: ReferenceValues) -
     )
 
 
-def stepped_selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
+def _stepped_selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
     """The same of a stream, step by step."""
     rows, equal = reference.rows, program.has_equal_steps
     sizes = [
@@ -73,4 +83,5 @@ def stepped_selftest(scene: Description, program: Program, reference: SteppedVal
         },
         built=program.laws is not None,
         equal=equal,
+        origin=_ORIGINS.get(program.kernel, ""),
     )
