@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +17,7 @@ from wavesym.errors import WavesymError
 from wavesym.exact import reference
 from wavesym.exact.contacts import schedule
 from wavesym.mechanics import chain
+from wavesym.mechanics.network import Network
 from wavesym.programs import choice
 from wavesym.results import summary as summaries
 from wavesym.scene import Scene, lowering
@@ -48,6 +51,46 @@ def room_of(path: Path) -> str:
 
 def test_the_door_is_files_that_are_read_at_once() -> None:
     assert max(text.count("\n") for path, text in sources() if path.parts[0] == "api") <= 350
+
+
+CACHED_METHOD = re.compile(
+    r"@(?:functools\.)?(?:lru_)?cache\b(?!d).*\n(?:\s+@.*\n)*\s+def (\w+)\(\s*(?:self|cls)\b", re.MULTILINE
+)
+
+
+def cached_methods(text: str) -> list[str]:
+    """Methods whose answers the class keeps: with these it keeps every object for ever."""
+    return CACHED_METHOD.findall(text)
+
+
+def test_no_class_keeps_what_its_objects_answer() -> None:
+    assert [(str(path), found) for path, text in sources() if (found := cached_methods(text))] == []
+
+
+@pytest.mark.parametrize("written", ["cache", "lru_cache(maxsize=4)", "functools.cache"])
+def test_a_class_that_keeps_what_its_objects_answer_is_seen(written: str) -> None:
+    text = f"class Law:\n    @cached_property\n    def mass(self): ...\n    @{written}\n    def answer(self, n): ...\n"
+    assert cached_methods(text) == ["answer"]
+
+
+def test_networks_go_when_nobody_needs_them() -> None:
+    """Of a chain that was run and whose tables were written."""
+    parts = [{"rod": 1}, {"mass": "3/7"}, {"rod": "2/3"}, "fixed"]
+    load = [{"at": "0", "times": [0], "steps": [1]}]
+    scene = Scene(
+        name="gone", system={"type": "chain", "parts": parts}, load=load, output={"until": 3, "velocity": ["1"]}
+    )
+    before = live_networks()
+    assert len(list(api.run_csv(scene, 5))) > 5
+    api.tables(scene, intervals=2)
+    api.summary(scene)
+    del scene
+    assert live_networks() <= before
+
+
+def live_networks() -> int:
+    gc.collect()
+    return sum(isinstance(each, Network) for each in gc.get_objects())
 
 
 @pytest.fixture

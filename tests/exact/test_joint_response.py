@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from math import prod
 
 import pytest
@@ -126,3 +128,15 @@ def test_partial_fractions_add_up(roots: list[fmpq], above: list[object], leadin
 )
 def test_polynomials_are_written(coefficients: list[object], text: str) -> None:
     assert polynomial_text(fmpq_poly(coefficients), most=2) == text
+
+
+def test_answers_of_laws_that_are_long_past_are_not_kept() -> None:
+    """Whoever computes many scenes in one process has no use for those of the first."""
+    first = law([Q(1, 10**6)], [[3]], [[0]], [None])
+    rates(first), joint_response(first)
+    past = weakref.ref(first)
+    del first
+    for k in range(600):
+        joint_response(law([k + 10**6], [[3]], [[0]], [None]))
+    gc.collect()
+    assert past() is None

@@ -15,7 +15,7 @@ cut has made: cuts follow it from joint to joint, and end there as they do here.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING
@@ -51,6 +51,7 @@ class Breakpoints:
         self._delays = {bar.delay for bar in self._network.bars}
         self._windowed = len(self._delays) == 1 and not self._network.corners
         self._scheduled = partial(contact_schedule, model, until)
+        self._breakpoints: Callable[[int, fmpq], Sequence[fmpq]] = cache(self._find_breakpoints)
 
     @property
     def joints_in_reach(self) -> Collection[int]:
@@ -149,8 +150,7 @@ class Breakpoints:
             return in_order([fmpq(0), *(time for time in times if time <= self._until)])
         return self._breakpoints(reading.rod - 1, reading.place)
 
-    @cache  # noqa: B019 - as long as this object
-    def _breakpoints(self, number: int, place: fmpq) -> Sequence[fmpq]:
+    def _find_breakpoints(self, number: int, place: fmpq) -> Sequence[fmpq]:
         bar = self._network.bars[number]
         if self._windowed:
             return list(self._in_windows(place))

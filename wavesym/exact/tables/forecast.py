@@ -7,7 +7,7 @@ that meets a joint has one more power at each rate of the joint, and keeps all o
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from itertools import product
 from math import inf
@@ -30,6 +30,7 @@ class Forecast:
 
     def __init__(self, joints: NetworkJoints) -> None:
         self._joints = joints
+        self._passes: Callable[[int], Mapping[End, frozenset[End]]] = cache(self._find_passes)
 
     def size(self, source: str, last: Mapping[int, fmpq], most: float = inf, key: str = "output.until") -> Size:
         """How large the response to a source will be. CostError where fronts or coefficients are too many."""
@@ -98,8 +99,7 @@ class Forecast:
         passes = self._passes(number)
         return set(self._starts(number, source) if source else ()).union(*(passes[end] for end in waves))
 
-    @cache  # noqa: B019 - as long as this object
-    def _passes(self, number: int) -> Mapping[End, frozenset[End]]:
+    def _find_passes(self, number: int) -> Mapping[End, frozenset[End]]:
         """Of what arrives at an end of a joint, which ends get something: none where it is absorbed."""
         law, response, ends = self._joints.law(number), self._joints.response(number), self._joints.ends(number)
         found: dict[End, set[End]] = {each.end: set() for each in ends}

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property, lru_cache
 from itertools import product
 
 from flint import arb, ctx, fmpq, fmpq_poly, fmpq_series
@@ -27,6 +27,7 @@ Matrix = Mapping[tuple[int, int], fmpq]
 _S = fmpq_poly([0, 1])
 _ZERO = fmpq(0)
 LONGEST_WRITTEN = 32  # characters of a number in a message
+_KEPT = 512  # laws whose answers are kept: joints of one network are often alike, those of many need not stay
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class JointResponse:
         return {point: increment for point, total in found.items() if (increment := trim(total))}
 
 
-@cache
+@lru_cache(_KEPT)
 def joint_polynomial(law: JointLaw) -> fmpq_poly:
     """The determinant of M s + C + K/s of the free points, times the powers of s that clear the fractions."""
     determinant, _ = _invert(law)
@@ -98,7 +99,7 @@ def rates(law: JointLaw) -> Mapping[fmpq, int] | None:
     return {factor[0] / factor[1]: int(power) for factor, power in factors}
 
 
-@cache
+@lru_cache(_KEPT)
 def joint_response(law: JointLaw) -> JointResponse:
     """The partial fractions. ValueError where the polynomial does not split over the rationals."""
     if rates(law) is None:
@@ -141,7 +142,7 @@ def _free(law: JointLaw) -> tuple[int, ...]:
     return tuple(sorted((*law.heavy, *law.light)))
 
 
-@cache
+@lru_cache(_KEPT)
 def _invert(law: JointLaw) -> tuple[fmpq_poly, list[list[fmpq_poly]]]:
     """The determinant and the adjugate of M s^2 + C s + K of the free points, by elimination without fractions.
 
