@@ -10,6 +10,8 @@ from os import PathLike
 from wavesym.errors import SceneError
 
 LARGEST_FILE = 16 * 2**20  # bytes
+_OPEN = ("/dev/fd/", "/dev/stdin", "/proc/")
+"""How names of files begin that a process has open."""
 
 
 def read_bytes(path: str | PathLike[str], wanted: str) -> tuple[str, bytes]:
@@ -46,9 +48,12 @@ def _read_limited(path: str) -> bytes:
     """The file's bytes, or one more than the limit: a device or a pipe need not end.
 
     What a kernel makes while it is read (/proc/kmsg) may never come, and says that it holds nothing: so it is not read.
+    Nor is a pipe with a name, to open which may take for ever: only one that this process has open, as of a shell.
     """
     if path != "-":
         held = os.stat(path)
+        if stat.S_ISFIFO(held.st_mode) and not os.path.abspath(path).startswith(_OPEN):
+            raise OSError(None, "Is a named pipe, into which nobody may write")
         if stat.S_ISREG(held.st_mode) and held.st_size == 0:
             return b""
         with open(path, "rb") as stream:

@@ -300,6 +300,27 @@ def test_an_endless_file_is_refused() -> None:
         Scene.from_toml("/dev/zero")
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_named_pipe_is_refused_before_anybody_waits_for_a_writer(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link.toml").symlink_to("pipe")
+    for path in (tmp_path / "pipe", tmp_path / "link.toml"):
+        with pytest.raises(SceneError, match=f"^{re.escape(str(path))}: Is a named pipe, .*; write a TOML file, -"):
+            Scene.from_toml(path)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/fd"), reason="no names of open files here")
+def test_a_pipe_that_is_open_is_read() -> None:
+    """As a shell gives it in the place of <(...)."""
+    out, into = os.pipe()
+    try:
+        os.write(into, DRIVE.encode())
+        os.close(into)
+        assert Scene.from_toml(f"/dev/fd/{out}").name == "good"
+    finally:
+        os.close(out)
+
+
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(DRIVE.encode())))
     assert Scene.from_toml("-").name == "good"
