@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from math import inf
 from typing import ClassVar
 
+LONGEST_NAME = 240  # characters of a path, or of what is written without a blank, in a message
 MOST_FAULTS = 20
 """So many are shown of a scene: who mends these sees the rest."""
 
@@ -21,6 +23,19 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def printable(text: str) -> str:
     """A text on one line, its line breaks, escape sequences and bytes that are no text written out."""
     return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in text)
+
+
+def shorten_name(name: str) -> str:
+    """A name for a message, such as a path: where it is long without its middle, so that the line can be read."""
+    if len(name) <= LONGEST_NAME:
+        return name
+    start, end = LONGEST_NAME // 3, 2 * LONGEST_NAME // 3
+    return f"{name[:start]}...{name[-end:]}"
+
+
+def shorten_words(line: str) -> str:
+    """A line of a message whose names are short: each run of characters without a blank."""
+    return re.sub(rf"\S{{{LONGEST_NAME + 1},}}", lambda word: shorten_name(word[0]), line)
 
 
 class WavesymError(ValueError):
@@ -74,10 +89,11 @@ class SceneError(WavesymError):
         """A line for each fault, the first of many."""
         line = f"(line {self.line})" if self.line else ""
         # a file's name may hold line breaks, and bytes that are no text
-        what = ": ".join(part for part in (printable(self.file), self.path, f"{self.what} {line}".rstrip()) if part)
+        file = printable(shorten_name(self.file))
+        what = ": ".join(part for part in (file, self.path, f"{self.what} {line}".rstrip()) if part)
         shown = [text for other in self.others[: MOST_FAULTS - 1] for text in other.lines]
         more = len(self.others) - len(shown)
-        return [what, *shown, *([f"{printable(self.file)}: and {more} more faults"] if more else [])]
+        return [what, *shown, *([f"{file}: and {more} more faults"] if more else [])]
 
     def in_file(self, file: str, line_of: Callable[[str], int] = lambda _: 0) -> SceneError:
         """The same of a file; `line_of` says on which of its lines a path stands. Faults come in the file's order."""

@@ -380,3 +380,39 @@ def test_c_of_modes_says_that_it_is_a_stream(
     assert main(["generate", str(scene), "-o", str(tmp_path), "--language", language]) == 0
     assert ("its C is a stream: shaken_step takes the loads" in capsys.readouterr().err) == told
     assert all("shaken_eval" not in file.read_text() for file in tmp_path.glob("*.h"))
+
+
+LONG = "/".join(["d" * 200] * 19)
+SPACED = "a b " * 50 + "/" + "c " * 100 + "/end"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", f"{LONG}/end"],
+        ["run", SPACED],
+        ["record", f"{LONG}/end"],
+        ["run", "drive_m1", "--at", f"{LONG}/end"],
+        ["run", "drive_m1", "-o", f"{LONG}{'d' * 200}/end"],
+        ["run", "drive_m1", "--samples", LONG],
+        [LONG],
+    ],
+    ids=["scene", "scene with blanks", "record", "times", "out", "option", "command"],
+)
+def test_a_long_path_leaves_room_for_what_is_wrong_with_it(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], folder: Path
+) -> None:
+    """Its beginning and its end are there."""
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert len(error) < 560
+    assert "..." in error
+    assert "end" in error or not arguments[-1].endswith("end")
+    name = arguments[-1].replace("\n", " ")
+    assert name[:70] in error
+
+
+def test_a_path_that_is_not_long_is_whole() -> None:
+    name = "d" * 117 + "/" + "e" * 117
+    assert name in str(wavesym.SceneError("wrong", file=name))

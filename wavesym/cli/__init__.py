@@ -16,7 +16,7 @@ from io import TextIOWrapper
 import click
 
 from wavesym import __version__
-from wavesym.errors import WavesymError, did_you_mean, printable
+from wavesym.errors import WavesymError, did_you_mean, printable, shorten_name, shorten_words
 
 GROUPS = {
     "Start": ("init", "scenes", "record", "schema", "completion"),
@@ -136,13 +136,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         return _unread()
     except OSError as error:
-        return _print_refusal(f"{error.filename or 'wavesym'}: {error.strerror or error}", WRONG_REQUEST)
+        return _print_refusal(
+            f"{shorten_name(str(error.filename or 'wavesym'))}: {error.strerror or error}", WRONG_REQUEST
+        )
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
 
 
 def _print_refusal(line: str, status: int) -> int:
-    click.echo(printable(" ".join(line.split())), err=True)  # names of files may be commands to a terminal
+    click.echo(
+        printable(shorten_words(" ".join(line.split()))), err=True
+    )  # names of files may be commands to a terminal
     return status
 
 
