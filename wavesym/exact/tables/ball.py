@@ -14,7 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
-from wavesym.numbers.doubles import midpoint, rational, rounded_ball
+from wavesym.numbers.doubles import midpoint, not_below, rational, rounded_ball
 
 # a quarter of the smallest double
 NEGLIGIBLE = arb(2) ** -1076
@@ -38,13 +38,10 @@ class Segment:
         local = arb(u)
         if self.from_zero and local == 0:
             return arb(0)
-        return sum(
-            (
-                polynomial(local) * (-local * arb(rate)).exp() if rate else polynomial(local)
-                for rate, polynomial in self.families.items()
-            ),
-            arb(0),
-        )
+        total = arb(0)
+        for rate, polynomial in self.families.items():
+            total += polynomial(local) * (-local * arb(rate)).exp() if rate else polynomial(local)
+        return total
 
 
 def shift(rates: Iterable[fmpq], polynomials: Iterable[arb_poly], by: fmpq) -> list[arb_poly]:
@@ -121,6 +118,13 @@ class Balls:
         place = bisect_right(self._starts, tau) - 1
         return self.segments[place].evaluate(tau - self._starts[place]) if place >= 0 else arb(0)
 
+    def evaluate_doubles(self, taus: Sequence[float], exact: Sequence[fmpq]) -> Iterator[arb]:
+        """The same at doubles, each given as a ratio, too: doubles are compared sooner."""
+        starts = [not_below(start) for start in self._starts]
+        for double, tau in zip(taus, exact, strict=True):
+            place = bisect_right(starts, double) - 1
+            yield self.segments[place].evaluate(tau - self._starts[place]) if place >= 0 else arb(0)
+
 
 def values(
     source: Source,
@@ -140,8 +144,7 @@ def values(
     def attempt(bits: int) -> list[float] | None:
         balls = Balls(source(bits))
         results = []
-        for tau in exact:
-            value = balls.evaluate(tau)
+        for value in balls.evaluate_doubles(taus, exact):
             double = rounded_ball(value)
             if double is None:
                 if not value.rad() < negligible:
