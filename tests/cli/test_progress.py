@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 
 import pytest
 
@@ -18,6 +19,7 @@ from wavesym.exact.contacts.events import events
 from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
+from wavesym.results import rows
 from wavesym.scene import Scene, lower
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
@@ -209,3 +211,42 @@ def test_it_says_how_far_the_search_for_events_has_come(soon: None, monkeypatch:
     ]
     assert told
     assert told == sorted(told)
+
+
+def test_many_instants_say_how_long_they_take_where_there_is_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Once, before they are computed; a few are not worth a line."""
+    times = tmp_path / "times"
+    times.write_text("0.25\n" * 12)
+    monkeypatch.setattr(rows, "_AT_ONCE", 5)
+    command = ["run", "drive_m1", "--at", str(times), "-o", str(tmp_path / "out.csv")]
+    assert main(command) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(rows, "_LONG", 0.0)
+    assert main(command) == 0
+    assert re.fullmatch(
+        r"run drive_m1: 12 instants of 5 outputs, right to the last bit, take about \d+ s \(.*`generate`\)\n",
+        capsys.readouterr().err,
+    )
+
+
+def test_how_many_instants_are_done_is_seen(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, soon: None) -> None:
+    """Also where lines go to standard output, and that is a file."""
+    monkeypatch.setattr(rows, "_AT_ONCE", 5)
+    made = rows._rows
+
+    def slowly(*given: object) -> list[str]:
+        time.sleep(0.04)
+        return made(*given)
+
+    monkeypatch.setattr(rows, "_rows", slowly)
+    for more in (["-o", str(tmp_path / "out.csv")], []):
+        terminal = opened(monkeypatch)
+        with (tmp_path / "standard").open("w") as standard:
+            monkeypatch.setattr(sys, "stdout", standard)
+            assert main(["run", "drive_m1", "--samples", "23", *more]) == 0
+        written = terminal.close()
+        assert re.search(r"run drive_m1, (5|10|15|20) of 23 instants \(0 s\)", written), written
+        assert screen(written) == [""]
+    assert (tmp_path / "standard").read_text() == (tmp_path / "out.csv").read_text()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
@@ -277,6 +278,13 @@ def put(text: str | Iterable[str]) -> None:
         click.echo(text, nl=not text.endswith("\n"))
     else:
         sys.stdout.writelines(text)
+
+
+def is_standard_output_a_file() -> bool:
+    """Whether a line on a terminal is beside what is put out, not in it: no terminal and no pager gets that."""
+    with suppress(OSError, ValueError):  # of a stream that is none of the system's
+        return stat.S_ISREG(os.fstat(sys.stdout.fileno()).st_mode)
+    return False
 
 
 def decimals(path: Path) -> list[float]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, decimals, put, put_notes, refuse_out
+from wavesym.cli.parameters import PATH, SCENE, decimals, is_standard_output_a_file, put, put_notes, refuse_out
 from wavesym.progress import progress
 
 if TYPE_CHECKING:
@@ -58,4 +59,5 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
             write_whole({out: lines})
     put_notes(scene, notes)
     if out is None:
-        put(lines)
+        with progress(f"run {scene.name}") if is_standard_output_a_file() else nullcontext():
+            put(lines)

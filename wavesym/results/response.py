@@ -74,9 +74,13 @@ class Response:
 
         Many values may need one where a few do not.
         """
+        self.prepare()
+        return self._programs[0] if self._programs else None
+
+    def prepare(self) -> None:
+        """Do what is done once, however many values are computed. Raises as where it is called."""
         if not self._programs:
             self._values([])
-        return self._programs[0] if self._programs else None
 
     @property
     def acting_model(self) -> Model:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from itertools import islice
+from itertools import chain, islice
+from time import monotonic
 
 import numpy as np
 from flint import fmpq
 
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
+from wavesym.progress import tell_detail, warn_long
 from wavesym.results.response import Response
 
 SAMPLES = 1001  # where nobody says how many
 _AT_ONCE = 5000  # tau
+_LONG = 10.0  # seconds that are worth a line where there is no terminal, too
 
 
 def csv_lines(response: Response, samples: int, at: Sequence[float] | None) -> Iterator[str]:
@@ -23,16 +26,28 @@ def csv_lines(response: Response, samples: int, at: Sequence[float] | None) -> I
     Of a physical scene `at` are times in the unit of results, and so is the first column. ToleranceError or CostError
     where no program will do; what goes wrong does so before there is a line.
     """
+    count = samples if at is None else len(at)
     blocks = iter(partial(_rows, response, instants(response.model, samples, at)), [])
+    if count > _AT_ONCE:
+        response.prepare()  # what is done once says nothing of the rest
+    start = monotonic()
     first = next(blocks, [])
-    return _join(_columns(response.model), first, blocks)
+    if (seconds := (monotonic() - start) * count / max(len(first), 1)) > _LONG:
+        exact = "" if response.program else ", right to the last bit,"
+        warn_long(
+            f"{count} instants of {len(response.outputs)} outputs{exact} take about {seconds:.0f} s (fewer take less; "
+            "so do programs of `generate`)"
+        )
+    return _join(_columns(response.model), first, blocks, count)
 
 
-def _join(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
+def _join(names: Sequence[str], first: Sequence[str], blocks: Iterable[Sequence[str]], count: int) -> Iterator[str]:
     yield ",".join(names) + "\n"
-    yield from first
-    for block in blocks:
+    done = 0
+    for block in chain([first], blocks):
         yield from block
+        done += len(block)
+        tell_detail(f"{done} of {count} instants")
 
 
 def _columns(model: Model) -> list[str]:
