@@ -23,7 +23,7 @@ from tests.sweeps.test_cluster import files
 from tests.sweeps.test_store import fake
 from wavesym.sweeps import batches as cutting
 from wavesym.sweeps import cluster, pace, work
-from wavesym.sweeps.batches import Task
+from wavesym.sweeps.batches import Batches, Task
 from wavesym.sweeps.running import Computing, run
 from wavesym.sweeps.status import status
 
@@ -111,6 +111,52 @@ def test_what_is_given_up_comes_in_parts_and_gives_the_same(swept: Callable[...,
     assert [len(places or range(CASES)) for _, places in client.sent] == [CASES] + [3] * 13 + [1]
     assert max(client.most) == 2  # side by side: one on each thread
     assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_workers_that_live_too_short_are_sent_no_more_batches(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each batch would be given up by itself, after several deaths, before the first part is computed."""
+    monkeypatch.setattr(cutting, "_MOST_BATCHES", 10)
+    run(SWEEP, tmp_path / "batches")
+    client = swept(Client(dies=lambda places: len(places) > 1, threads=lambda sent: 1))
+    sizes = [len(places or range(4)) for _, places in client.sent]
+    assert sizes.count(4) <= 4  # three under way at first, one when the first of these is given up
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes.count(1) == CASES
+    assert client.most[-1] == 1
+    assert files(tmp_path / "out") == files(tmp_path / "batches")
+
+
+def test_parts_get_smaller_for_all_that_waits(swept: Callable[..., Client], tmp_path: Path) -> None:
+    """Two parts of three are given up; those that wait are cut, and not given up each."""
+    client = swept(Client(dies=lambda places: len(places) > 1, threads=lambda sent: 1))
+    sizes = [len(places or range(CASES)) for _, places in client.sent]
+    assert sizes[:3] == [CASES, 3, 1] or sizes[:3] == [CASES, 3, 3]
+    assert sizes.count(3) <= 2
+    assert sizes.count(1) == CASES
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_a_case_that_kills_leaves_the_other_batches_whole(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(cutting, "_MOST_BATCHES", 10)
+    client = swept(Client(dies=lambda places: (1,) in places, threads=lambda sent: 1))
+    found = status(tmp_path / "out")
+    assert (found.done, found.failed, found.left) == (CASES - 1, 1, 0)
+    assert [batch for batch, places in client.sent if places is None] == list(range(10))
+
+
+@pytest.mark.parametrize(("kind", "sizes"), [("recorded", [64, 64, 64, 8]), ("single", [13] * 15 + [5])])
+def test_parts_have_groups_that_share_work_whole(kind: str, sizes: list[int]) -> None:
+    """A part of a group takes as long as all of it."""
+    batches = Batches(kind, (200,), (200,))
+    parts = batches.cut(0, batches.places(0), 16)
+    assert [len(part) for part in parts] == sizes
+    assert [place for part in parts for place in part] == batches.places(0)
+    (group, *_) = batches.groups(0)
+    assert [len(part) for part in batches.cut(0, group, 16)] == [4] * 16
 
 
 def test_a_case_that_kills_whatever_is_beside_it_is_the_only_one_that_fails(

@@ -67,6 +67,21 @@ class Batches:
         places = self.places(batch)
         return (places[first : first + _GROUP] for first in range(0, len(places), _GROUP))
 
+    def cut(self, batch: int, places: list[Place], count: int) -> list[list[Place]]:
+        """Some of its cases in about so many parts: of whole groups where these share work, if there are several."""
+        size = ceil(len(places) / count)
+        wanted = set(places)
+        groups = [some for group in self.groups(batch) if (some := [place for place in group if place in wanted])]
+        if self.kind == "single" or len(groups) == 1:
+            return [places[first : first + size] for first in range(0, len(places), size)]
+        parts = [groups[0]]
+        for group in groups[1:]:
+            if len(parts[-1]) + len(group) > size:
+                parts.append(group)
+            else:
+                parts[-1] = [*parts[-1], *group]
+        return parts
+
     def touching(self, part: tuple[slice, ...]) -> Iterator[int]:
         """The batches with cases in a part of the dimensions."""
         ends = zip(part, self.chunk, strict=True)

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
-from math import inf
+from math import ceil, inf
 from queue import Empty, SimpleQueue
 from time import monotonic
 from types import ModuleType
@@ -22,7 +22,7 @@ from uuid import uuid4
 
 from wavesym import __version__
 from wavesym.errors import WavesymError
-from wavesym.sweeps.batches import Batches, Place, Task
+from wavesym.sweeps.batches import Batches, Task
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.store import require_packages
 from wavesym.sweeps.values import BatchValues
@@ -102,36 +102,96 @@ def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[Ta
 
     _send(client, plan, batches)
     sent = _TaskQueue(client, plan)
-    left, parts, alone = deque(todo), deque[Task](), deque[Task]()
+    waiting = _Waiting(batches, todo)
     last: Task | None = None
-    while left or parts or alone or sent:
-        while left and len(sent) < _AHEAD * sent.threads:
-            sent.add(left.popleft())
-        while parts and not left and len(sent) < sent.threads:
-            sent.add(parts.popleft())
-        if alone and not (left or parts or sent):
-            sent.add(last := alone.popleft())
+    while waiting or sent:
+        while len(sent) < sent.threads * (_AHEAD if waiting.are_whole else 1) and (task := waiting.next_task()):
+            sent.add(task)
+        if not sent:
+            sent.add(last := waiting.alone.popleft())
         if (found := sent.next_result()) is None:
             continue
-        (batch, places), future = found
+        task, future = found
         try:
-            yield batch, _result(future)
+            values = _result(future)
+            waiting.come(task)
+            yield task[0], values
         except KilledWorker:
-            places = batches.places(batch) if places is None else places
-            if len(places) > 1:
-                parts.extend((batch, part) for part in _in_parts(places))
-            elif (batch, places) != last:
-                alone.append((batch, places))
-            else:
-                values = BatchValues.empty(plan, places)
-                values.failed[places[0]] = _DIED
-                yield batch, values
+            if not waiting.give_up(task, last):
+                yield task[0], _death(plan, task)
         future.release()
 
 
-def _in_parts(places: list[Place]) -> Iterator[list[Place]]:
-    size = -(-len(places) // _PARTS)
-    return (places[first : first + size] for first in range(0, len(places), size))
+def _death(plan: SweepPlan, task: Task) -> BatchValues:
+    """What comes of a case that kills its worker, alone."""
+    _, places = task
+    assert places
+    values = BatchValues.empty(plan, places)
+    values.failed[places[0]] = _DIED
+    return values
+
+
+class _Waiting:
+    """Tasks that are not sent: whole batches first, then parts of what was given up, then cases `alone`.
+
+    Workers may live too short for a batch. Where tasks are given up one after the other that are larger than any that
+    came back, none so large is sent any more: each would have to be given up by itself, after several deaths.
+    """
+
+    def __init__(self, batches: Batches, todo: Iterable[Task]) -> None:
+        self._batches = batches
+        self._left, self._parts, self.alone = deque(todo), deque[Task](), deque[Task]()
+        self._largest = 0  # of tasks that came back, in cases
+        self._strikes = 0  # tasks larger than that, given up since one came back
+        self._limit = inf
+
+    def __bool__(self) -> bool:
+        return bool(self._left or self._parts or self.alone)
+
+    @property
+    def are_whole(self) -> bool:
+        """Whether the next one is a batch that nothing is known against: several of these are under way at a time."""
+        return bool(self._left) and self._limit == inf
+
+    def next_task(self) -> Task | None:
+        """The next one that may go beside others; None where there is none."""
+        first, second = (self._left, self._parts) if self._limit == inf else (self._parts, self._left)
+        if not (queue := first or second):
+            return None
+        task = queue.popleft()
+        most = max(self._limit, self._largest)
+        while self._count(task) > most:
+            queue.extendleft(reversed(self._in_parts(task, ceil(self._count(task) / most))))
+            task = queue.popleft()
+        return task
+
+    def come(self, task: Task) -> None:
+        """A task has come back."""
+        self._largest, self._strikes = max(self._largest, self._count(task)), 0
+
+    def give_up(self, task: Task, last: Task | None) -> bool:
+        """Take again what workers died of; False for a case that was the `last` one alone."""
+        count = self._count(task)
+        if count == 1:
+            if task != last:
+                self.alone.append(task)
+            return task != last
+        parts = self._in_parts(task, _PARTS)
+        self._parts.extend(parts)
+        if count > self._largest:
+            self._strikes += 1
+            if self._strikes > 1:
+                self._limit = min(self._limit, max(map(self._count, parts)))
+        return True
+
+    def _count(self, task: Task) -> int:
+        batch, places = task
+        return self._batches.count(batch) if places is None else len(places)
+
+    def _in_parts(self, task: Task, count: int) -> list[Task]:
+        batch, places = task
+        places = self._batches.places(batch) if places is None else places
+        return [(batch, part) for part in self._batches.cut(batch, places, count)]
 
 
 class _TaskQueue:
