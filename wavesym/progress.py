@@ -15,6 +15,9 @@ T = TypeVar("T")
 QUIET, STEP = 2.0, 0.5
 """Seconds until there is a line, and between two states of it."""
 
+LONG = 10.0
+"""Seconds that are worth a line where there is no terminal, too."""
+
 _WIDTH = 80  # of a terminal that does not say
 
 
@@ -103,6 +106,12 @@ def warn_long(text: str) -> None:
     """Say why what is being done takes long, once, wherever standard error leads; nothing where no command does it."""
     if _running and sys.stderr is not None:
         _running[-1].warn(text)
+
+
+def warn_count(count: int, what: str, seconds: float, helps: str) -> None:
+    """Say about how long so many take, at `seconds` each, where that is long; `helps` is what takes less."""
+    if (total := count * seconds) > LONG:
+        warn_long(f"{count} {what} take about {total:.0f} s ({helps})")
 
 
 def _put(text: str) -> None:

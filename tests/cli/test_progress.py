@@ -19,7 +19,7 @@ from wavesym.exact.contacts.events import events
 from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
-from wavesym.results import rows
+from wavesym.results import frequency_response, rows
 from wavesym.scene import Scene, lower
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
@@ -223,7 +223,7 @@ def test_many_instants_say_how_long_they_take_where_there_is_no_terminal(
     command = ["run", "drive_m1", "--at", str(times), "-o", str(tmp_path / "out.csv")]
     assert main(command) == 0
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr(rows, "_LONG", 0.0)
+    monkeypatch.setattr(progress, "LONG", 0.0)
     assert main(command) == 0
     assert re.fullmatch(
         r"run drive_m1: 12 instants of 5 outputs, right to the last bit, take about \d+ s \(.*`generate`\)\n",
@@ -250,3 +250,17 @@ def test_how_many_instants_are_done_is_seen(monkeypatch: pytest.MonkeyPatch, tmp
         assert re.search(r"run drive_m1, (5|10|15|20) of 23 instants \(0 s\)", written), written
         assert screen(written) == [""]
     assert (tmp_path / "standard").read_text() == (tmp_path / "out.csv").read_text()
+
+
+def test_many_frequencies_say_how_long_they_take(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(frequency_response, "_OFTEN", 5)
+    command = ["frf", "building_m2", "--points", "12", "--to", "5", "-o", str(tmp_path / "out.csv")]
+    assert main(command) == 0
+    assert " take about " not in capsys.readouterr().err
+    monkeypatch.setattr(progress, "LONG", 0.0)
+    assert main(command) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if " take about " in line]
+    assert len(told) == 1
+    assert re.fullmatch(r"frf building_m2: 12 frequencies take about \d+ s \(fewer take less\)", told[0])

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import nan
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array, Complex
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
+from wavesym.progress import tell_detail, warn_count
 from wavesym.results.modal_transfer import MOST_MODES, transfers
 from wavesym.results.optional import require_packages
 from wavesym.results.presentation import OutputRows, csv_line
@@ -33,6 +35,7 @@ _MODES_SHOWN, _STEPS = 5, 400
 _CLOSER = 2.0 ** -np.arange(12)  # of the distance of two frequencies
 _RIGID = 1e-6  # of what is above a frequency, one that is 0 but for rounding
 _MOST_POINTS = 1_000_000
+_OFTEN = 100  # frequencies after which it is said how many are done
 _BITS, _MOST_BITS = 128, 1 << 13
 _TIMES = 2  # as many modes, where damping ratios need more
 _SHARP, _ZERO, _BITS_OF_ZERO = 70, 160, 1024
@@ -195,7 +198,12 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
         undecided = given[np.isnan(values.real).any(axis=0)].tolist()
     else:
         points = _Points(Transfer(model, load))
+        start = monotonic()
         for k, f in enumerate(given.tolist()):
+            if k % _OFTEN == 0:
+                tell_detail(f"{k} of {len(given)} frequencies")
+            if k == _OFTEN:
+                warn_count(len(given), "frequencies", (monotonic() - start) / k, "fewer take less")
             values[:, k], radii = points.solve(f)
             errors = np.fmax(errors, radii)
         undecided = points.possible_poles

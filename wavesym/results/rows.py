@@ -12,12 +12,11 @@ from flint import fmpq
 
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
-from wavesym.progress import tell_detail, warn_long
+from wavesym.progress import tell_detail, warn_count
 from wavesym.results.response import Response
 
 SAMPLES = 1001  # where nobody says how many
 _AT_ONCE = 5000  # tau
-_LONG = 10.0  # seconds that are worth a line where there is no terminal, too
 
 
 def csv_lines(response: Response, samples: int, at: Sequence[float] | None) -> Iterator[str]:
@@ -32,12 +31,10 @@ def csv_lines(response: Response, samples: int, at: Sequence[float] | None) -> I
         response.prepare()  # what is done once says nothing of the rest
     start = monotonic()
     first = next(blocks, [])
-    if (seconds := (monotonic() - start) * count / max(len(first), 1)) > _LONG:
-        exact = "" if response.program else ", right to the last bit,"
-        warn_long(
-            f"{count} instants of {len(response.outputs)} outputs{exact} take about {seconds:.0f} s (fewer take less; "
-            "so do programs of `generate`)"
-        )
+    exact = "" if response.program else ", right to the last bit,"
+    each = (monotonic() - start) / max(len(first), 1)
+    helps = "fewer take less; so do programs of `generate`"
+    warn_count(count, f"instants of {len(response.outputs)} outputs{exact}", each, helps)
     return _join(_columns(response.model), first, blocks, count)
 
 
