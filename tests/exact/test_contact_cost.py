@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from heapq import heappop, heappush
 from typing import Any
 
@@ -20,6 +21,7 @@ from wavesym.exact.contacts import cost
 from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.reference import Reference
+from wavesym.mechanics.travel_times import adjust_speeds
 from wavesym.pictures.page import document
 from wavesym.pictures.page.document import page
 from wavesym.programs.making import make
@@ -40,6 +42,16 @@ def test_a_layered_specimen_is_refused_after_a_thousand_stretches() -> None:
     """Its fronts would make a million: every sum of multiples of two delays."""
     with pytest.raises(CostError, match=r"make 1024 stretches by tau = 1\.\d+, which would be .*e\+0[56] by"):
         events(layered("3", LAYERS))
+
+
+@pytest.mark.quick(2)
+def test_layers_whose_speeds_are_adjusted_as_the_refusal_says_are_served(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost, "MOST_STAGES", 4000)
+    model = layered("3", ["0.00393", "0.01897"])
+    with pytest.raises(CostError, match=r'the limit is 4000 \(speed_adjustment = "0.5 %" under \[system\], a shorter'):
+        events(model)
+    bars = adjust_speeds(model.network.bars, fmpq(5, 1000))
+    assert events(replace(model, network=replace(model.network, bars=bars)))
 
 
 @pytest.mark.slow
