@@ -148,6 +148,24 @@ def test_a_stream_that_hides_what_it_has_lost_is_seen(
     assert failing(text)
 
 
+def test_what_a_stream_says_is_of_its_outputs_under_the_loads_of_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In units they are far below what its degree was judged by: an error of a millionth passed."""
+    storey = {"count": 2, "height": "3.5 m", "stiffness": "678 MN/m", "column_mass": "2.66 t", "floor_mass": "35 t"}
+    scene = Scene(
+        name="small",
+        units={"length": "mm"},
+        system={"type": "building", "base": "ground", "storey": [storey]},
+        load=[{"spacing": "0.001 s", "samples": [0, 1, -1, "1/2", 0], "unit": "m/s^2"}],
+        output={"until": "0.008 s", "tolerance": 1e-9, "velocity": [1], "drift": [1]},
+    )
+    text, passed = report.verify([(scene, lower(scene))], [Request(stream=True)])
+    assert passed, text
+    right = "out[output] += gain[k] * value_now(state, k)"
+    monkeypatch.setattr(programs, "files", changing(right, f"{right} * (real)(1 + 1e-6)"))
+    text, passed = report.verify([(scene, lower(scene))], [Request(stream=True)])
+    assert "stream, C" in failing(text)
+
+
 JUMPS = {"body": 1, "times": [0, "3/4"], "steps": [1, -2]}
 RAMPS = {"body": 1, "times": [0, "3/4"], "steps": [1, 0], "ramps": [1, -2]}
 FAULTS_OF_FMUS = {

@@ -237,14 +237,17 @@ def _instants(known: ReferenceOutputs, integrals: Integrals, program: Program) -
 
 
 def _sizes(known: ReferenceOutputs, integrals: Integrals, program: Program) -> list[float]:
-    """The largest value of each output on the whole horizon, as far as it is known."""
+    """The largest value of each output on the whole horizon, as far as it is known.
+
+    A stream has been judged under other loads: what it states is relative to what its outputs come to under these.
+    """
     found = []
     for k, output in enumerate(program.outputs):
         if known.outputs:
             seen = 0.0 if known.outputs[k].zero else known.outputs[k].scale
         else:
             seen = each.size if (each := integrals[k]) else 0.0
-        found.append(max(output.largest, seen))
+        found.append(seen if program.evaluator == "stream" else max(output.largest, seen))
     return found
 
 
