@@ -165,6 +165,21 @@ def test_a_set_is_what_it_is_alone(tmp_path):
     assert check_building(made, own("building")[:4]) == [1, 2, 1]
 
 
+def test_what_is_the_caller_s_is_as_large_whatever_the_flags(tmp_path):
+    """A program and a library of other flags agree on it."""
+    name = BUILDING.name
+    written(BUILDING, ["kappa"], tmp_path, parts=["batch"])
+    kinds = ("batch", "model", "parameters")
+    sizes = "".join(f"size_t {kind}(void); size_t {kind}(void) {{ return sizeof({name}_{kind}); }}\n" for kind in kinds)
+    (tmp_path / "sizes.c").write_text(f'#include "{name}.h"\n{sizes}')
+    found = []
+    for k, flag in enumerate(["-O0", f"-D{name.upper()}_PLAIN", "-march=native"]):
+        compiler().run([*LANGUAGES["c99"], flag, "-fPIC", "-shared", "sizes.c", "-o", f"sizes{k}.so"], tmp_path)
+        library = ctypes.CDLL(str(tmp_path / f"sizes{k}.so"))
+        found.append([library[kind]() for kind in kinds])
+    assert found[0] == found[1] == found[2]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("of_caller", [["-O1"], ["-O1", "-march=native"]])
 @pytest.mark.parametrize("flags", [["-O1", "-DNAME_PLAIN"], ["-O1"], ["-O1", "-march=native"]])
