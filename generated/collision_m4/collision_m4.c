@@ -20,6 +20,14 @@ static real not_a_number(void)
     return zero / zero;
 }
 
+/* On aarch64 functions that are called in loops are by themselves, where they have vectors. Put into a loop that calls others,
+ * too, they would have their constants taken out of it, and on the stack: a call there keeps 8 bytes of a register at most. */
+#if defined(__GNUC__) && defined(__aarch64__)
+#define BY_ITSELF __attribute__((noinline))
+#else
+#define BY_ITSELF
+#endif
+
 /* Bytes of the widest vectors that the compiler may use; 0 where it knows none, or COLLISION_M4_PLAIN asks for plain C. Wider ones
  * would go through memory. */
 #if !defined(__GNUC__) || defined(__FRAMAC__) || defined(COLLISION_M4_PLAIN)
@@ -820,7 +828,7 @@ typedef struct {
 
 /* Of edges up to number `last`, where samples are `apart`: the sample nearest to an edge, or where that comes before
  * it the next one; as run_end has it. */
-static void look_ahead(const samples *s, const real *edges, int last, run_ends *found)
+static BY_ITSELF void look_ahead(const samples *s, const real *edges, int last, run_ends *found)
 {
     const instants t = s->at;
     const real whole = exact * (real)0.75; /* so large that a sum with it is a whole number */
@@ -865,6 +873,35 @@ WITHIN size_t end_ahead(const samples *s, const real *edges, int edge, int many,
 }
 #endif
 
+/* All outputs of a piece, four vectors at a time, from sample k to one before `end` or a little further. The first sample
+ * that is left. */
+static BY_ITSELF size_t by_fours(const polynomials *p, instants t, real middle, size_t k, size_t end)
+{
+    lanes numbers = number(k) + *(const slice *)offset;
+    for (; k < end; k += 4 * LANES) {
+        const block w = places(4, &t, numbers, middle);
+        numbers = numbers + (real)(4 * LANES);
+        int m = 0;
+        for (; m + 2 <= p->members; m += 2) { /* eight sums: each waits for its own last step */
+            together(2, 4, p, m, w, k);
+        }
+        if (m < p->members) {
+            together(1, 4, p, m, w, k);
+        }
+    }
+    return k;
+}
+
+static BY_ITSELF void two_vectors(const polynomials *p, instants t, real middle, size_t k)
+{
+    few(2, p, places(2, &t, number(k) + *(const slice *)offset, middle), k);
+}
+
+static BY_ITSELF void one_vector(const polynomials *p, instants t, real middle, size_t k)
+{
+    few(1, p, places(1, &t, number(k) + *(const slice *)offset, middle), k);
+}
+
 /* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples and it is
  * not known where the next ones end. Whole vectors are written: what is beyond a piece is written anew by the next one.
  * Returns the first sample that is left. */
@@ -906,26 +943,14 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
         p.last = coefficient + first_power[begin + piece + 1] - p.members;
         if (end > k + 2 * LANES && k < s->fours) {
             const size_t left = end - 2 * LANES; /* from here on there are two vectors at most */
-            const size_t fours = left < s->fours ? left : s->fours;
-            lanes numbers = number(k) + *(const slice *)offset;
-            for (; k < fours; k += 4 * LANES) {
-                const block w = places(4, &t, numbers, middle);
-                numbers = numbers + (real)(4 * LANES);
-                int m = 0;
-                for (; m + 2 <= p.members; m += 2) { /* eight sums: each waits for its own last step */
-                    together(2, 4, &p, m, w, k);
-                }
-                if (m < p.members) {
-                    together(1, 4, &p, m, w, k);
-                }
-            }
+            k = by_fours(&p, t, middle, k, left < s->fours ? left : s->fours);
         }
         if (end > k + LANES && k < s->twos) {
-            few(2, &p, places(2, &t, number(k) + *(const slice *)offset, middle), k);
+            two_vectors(&p, t, middle, k);
             k += 2 * LANES;
         }
         if (end > k && k < s->ones) {
-            few(1, &p, places(1, &t, number(k) + *(const slice *)offset, middle), k);
+            one_vector(&p, t, middle, k);
             k += LANES;
         }
         for (; k < end; ++k) {

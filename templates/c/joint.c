@@ -84,7 +84,8 @@ static void step_block(const real *columns, const real *acting, int count, const
 /* A joint under forces (coefficients of each, NULL for none), whose states x go from the start of the panel to its end.
  * Where it has states `given` becomes what acts on its points, with p for a body, and then the `velocities` of these
  * points follow. */
-static void step_joint(int joint, const joint_on_panel *on, const real *acting, real *x, real *given, real *velocities)
+static BY_ITSELF void step_joint(int joint, const joint_on_panel *on, const real *acting, real *x, real *given,
+                                 real *velocities)
 {
     const int body = BODIES > 0 && law[joint] == BODY;
     const int first = first_port[joint];

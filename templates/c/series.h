@@ -1,4 +1,5 @@
 /* series.h: Chebyshev series of DEGREE, as marches and streams read them. */
+#include "apart.h"
 #include "polynomials.c"
 
 static void clear(real *y, int count)

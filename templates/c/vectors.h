@@ -1,4 +1,5 @@
 /* vectors.h: numbers that are computed at once. */
+#include "apart.h"
 
 /* Bytes of the widest vectors that the compiler may use; 0 where it knows none, or NAME_PLAIN asks for plain C. Wider ones
  * would go through memory. */

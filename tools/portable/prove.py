@@ -95,7 +95,7 @@ def command(subject: PortableProgram) -> list[str]:
 def annotate(subject: PortableProgram, text: str) -> str:
     """C with what tells the prover where to follow each value by itself; others read comments there."""
     for function, number in SPLITS.get(subject.effort, {}).items():
-        head = rf"(?m)^(static void (?:OF\()?{function}\)?\([^{{;]*\{{\n)"
+        head = rf"(?m)^(static (?:BY_ITSELF )?void (?:OF\()?{function}\)?\([^{{;]*\{{\n)"
         text = re.sub(head, rf"\g<1>    //@ split {number};\n    ;\n", text)
     for function, promise in PROMISES.get(subject.effort, {}).items():
         contract = f"/*@ ensures {subject.instantiate(promise)}; */"

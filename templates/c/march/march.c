@@ -109,6 +109,23 @@ static void change_loads(march *state, int panel)
     }
 }
 
+/* A joint on a panel of the current window. */
+static BY_ITSELF void advance_joint(march *state, int joint, int panel, const real *acting)
+{
+    const int first = first_port[joint];
+    joint_on_panel on = no_ends;
+    real given[WIDEST + 1];
+    real velocities[WIDEST];
+    on.table = matrix + answer[panel * JOINTS + joint];
+    on.pushes = push + first;
+    on.driven = drive[joint];
+    for (int port = first; port < first_port[joint + 1]; ++port) {
+        on.arriving[port - first] = wave(state, arrive[port], steps[arrive[port]], panel);
+        on.sent[port - first] = wave_sent(state, send[port], panel);
+    }
+    step_joint(joint, &on, acting, state->x + first_state[joint], given, velocities);
+}
+
 /* The window that has just been made known. */
 static void advance(march *state)
 {
@@ -122,18 +139,7 @@ static void advance(march *state)
             load_series(state->load[force], middle, half, acting + force * POWERS);
         }
         for (int joint = 0; joint < JOINTS; ++joint) {
-            const int first = first_port[joint];
-            joint_on_panel on = no_ends;
-            real given[WIDEST + 1];
-            real velocities[WIDEST];
-            on.table = matrix + answer[panel * JOINTS + joint];
-            on.pushes = push + first;
-            on.driven = drive[joint];
-            for (int port = first; port < first_port[joint + 1]; ++port) {
-                on.arriving[port - first] = wave(state, arrive[port], steps[arrive[port]], panel);
-                on.sent[port - first] = wave_sent(state, send[port], panel);
-            }
-            step_joint(joint, &on, acting, state->x + first_state[joint], given, velocities);
+            advance_joint(state, joint, panel, acting);
         }
     }
 }

@@ -103,7 +103,7 @@ static real estimate_of(
 }
 
 /* Find modes and what they make of loads and outputs. False for a bad number. */
-static int find_model(model *m, const name_parameters *parameters, projection *p, damping_rule *rule)
+static BY_ITSELF int find_model(model *m, const name_parameters *parameters, projection *p, damping_rule *rule)
 {
     real value[VALUES];
     chain c;

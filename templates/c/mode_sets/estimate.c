@@ -183,7 +183,7 @@ static swing swing_of(const history *f, real w, real z, real wrong)
 }
 
 /* What rounding may do to all outputs: to modes, to what they and loads do in steps, and to sums over all modes. */
-static void rounding_errors(const model *m, const projection *p, const history *f, real *error)
+static BY_ITSELF void rounding_errors(const model *m, const projection *p, const history *f, real *error)
 {
     const real sum = (MODES + 3 * LOADS) * DBL_EPSILON;
     const real steps = (HALVES + 1) * DBL_EPSILON;

@@ -135,7 +135,7 @@ static void search_last(const model *m, const motion *s, int step, extremes *fou
 }
 
 /* An output and its first two derivatives, while loads go by `slope`. */
-static void read_derivatives(const model *m, const motion *s, const real *slope, int output, real *out)
+static BY_ITSELF void read_derivatives(const model *m, const motion *s, const real *slope, int output, real *out)
 {
     out[0] = read_one(m, s, output);
     out[1] = 0;

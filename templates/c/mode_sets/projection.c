@@ -28,16 +28,16 @@ static void add(inexact *total, real x)
 
 /* What an output is: of the slope at the end of its bar, or of how far places move, which by rounding are wrong by no more
  * than `rounding` times `size`. */
-static inexact read_output(const chain *c, int output, inexact slope, const real *moved, const real *size)
+static void read_output(const chain *c, int output, const inexact *slope, const real *moved, const real *size, inexact *total)
 {
     const int bar = output_bar[output];
     const real scale = bar < 0 ? 0 : output_scale[output] * (output_force[output] ? c->impedance[bar] : c->delay[bar]);
-    inexact total = {scale * slope.value, fabs(scale) * slope.lost};
+    total->value = scale * slope->value;
+    total->lost = fabs(scale) * slope->lost;
     for (int term = first_term[output]; term < first_term[output + 1]; ++term) {
-        total.value += term_weight[term] * moved[term_place[term]];
-        total.lost += rounding * fabs(term_weight[term] * size[term_place[term]]);
+        total->value += term_weight[term] * moved[term_place[term]];
+        total->lost += rounding * fabs(term_weight[term] * size[term_place[term]]);
     }
-    return total;
 }
 
 static inexact value_of_mode(const chain *c, const angles *a, real w, int output, const real *moved)
@@ -45,7 +45,9 @@ static inexact value_of_mode(const chain *c, const angles *a, real w, int output
     const int bar = output_bar[output];
     const inexact none = {0, 0};
     const inexact slope = bar < 0 ? none : slope_of_mode(a, w, moved, bar, output_side[output]);
-    return read_output(c, output, slope, moved, moved);
+    inexact total;
+    read_output(c, output, &slope, moved, moved, &total);
+    return total;
 }
 
 static inexact value_of_shape(const chain *c, int output, const static_shape *of)
@@ -53,7 +55,9 @@ static inexact value_of_shape(const chain *c, int output, const static_shape *of
     const int bar = output_bar[output];
     const inexact none = {0, 0};
     const inexact slope = bar < 0 ? none : slope_of_shape(c, of, bar, output_side[output]);
-    return read_output(c, output, slope, of->moved, of->size);
+    inexact total;
+    read_output(c, output, &slope, of->moved, of->size, &total);
+    return total;
 }
 
 /* The share of a mode in a load. */
@@ -211,10 +215,11 @@ static void project_outputs(const chain *c, const springs *s, projection *p)
         }
         if (bar >= 0) {
             const inexact one = {1, 0};
-            const real weight = read_output(c, output, one, force, force).value;
+            inexact weight;
+            read_output(c, output, &one, force, force, &weight);
             total = break_mass(c, s, bar, output_side[output]);
-            total.value *= weight * weight;
-            total.lost *= weight * weight;
+            total.value *= weight.value * weight.value;
+            total.lost *= weight.value * weight.value;
         } else if (output_power[output] == 0) {
             total.value -= part * part;
         } else {

@@ -8,7 +8,7 @@ static void rest(motion *s)
 }
 
 /* How they move `time` later, for which `t` are the turns, while loads go by `slope`. */
-static void advance(const model *m, const turns *t, real time, const real *slope, const motion *s, motion *out)
+static BY_ITSELF void advance(const model *m, const turns *t, real time, const real *slope, const motion *s, motion *out)
 {
     real start[MODES] = {0};
     real ramp[MODES] = {0};

@@ -2,7 +2,7 @@
 #include "read.c"
 
 /* A block of an output at t after the start of a window's cycle. */
-static void output_block(const name_model *m, int window, int at, const real *t, real *out)
+static BY_ITSELF void output_block(const name_model *m, int window, int at, const real *t, real *out)
 {
     enum { WIDTH = BLOCK / LANES < ABREAST ? BLOCK / LANES : ABREAST };
     const size_t size = (size_t)m->degree[window] + 2;

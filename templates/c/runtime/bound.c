@@ -75,7 +75,7 @@ static void start_loads(errors *w)
  * its factor and the last difference are 9 roundings of u, and |T_k'| is at most k^2: 9/2 k^2. Both are less than
  * 6 (k + 1)(k + 2). The product with T_k and degree + 1 sums are less than degree + 4. Before, it is multiplied by what is
  * rounded, too, and added to others. */
-static void start_reading(errors *w, int degree)
+static BY_ITSELF void start_reading(errors *w, int degree)
 {
     if (degree > w->degree) {
         for (int k = 0; k < NAME_ROW + LANES; ++k) {
@@ -341,6 +341,35 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
     }
 }
 
+/* The same, as compilers know then: of a body between two ends, of any other, of a point without state, of a block. */
+static BY_ITSELF void add_of_body(const progress *b, const places *now, errors *w, int joint, int panel, real *apart)
+{
+    add_residual(b, now, w, joint, panel, 1, 1, 0, 2, apart);
+}
+
+static BY_ITSELF void add_of_hub(const progress *b, const places *now, errors *w, int joint, int panel, int ends,
+                                 real *apart)
+{
+    add_residual(b, now, w, joint, panel, 1, 1, 0, ends, apart);
+}
+
+static BY_ITSELF void add_of_point(const progress *b, const places *now, errors *w, int joint, int panel, int ends,
+                                   real *apart)
+{
+    if (ends == 2) {
+        add_residual(b, now, w, joint, panel, 0, 1, 1, 2, apart);
+    } else {
+        add_residual(b, now, w, joint, panel, 0, 1, 1, ends, apart);
+    }
+}
+
+static BY_ITSELF void add_of_block(const progress *b, const places *now, errors *w, int joint, int panel, int ends,
+                                   real *apart)
+{
+    const int n = states_of(joint), points = points_of(joint);
+    add_residual(b, now, w, joint, panel, n, points, points, ends, apart);
+}
+
 /* What a window that has been marched adds to the errors, and how large those of its waves are. */
 static void add_window(const progress *b, errors *w)
 {
@@ -356,17 +385,15 @@ static void add_window(const progress *b, errors *w)
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            const int n = states_of(joint), points = points_of(joint), ends = first_port[joint + 1] - first_port[joint];
-            if (is_body[joint] && ends == 2) { /* as compilers know then */
-                add_residual(b, &now, w, joint, panel, 1, 1, 0, 2, apart);
+            const int ends = first_port[joint + 1] - first_port[joint];
+            if (is_body[joint] && ends == 2) {
+                add_of_body(b, &now, w, joint, panel, apart);
             } else if (is_body[joint]) {
-                add_residual(b, &now, w, joint, panel, 1, 1, 0, ends, apart);
-            } else if (points == 1 && n == 0 && ends == 2) {
-                add_residual(b, &now, w, joint, panel, 0, 1, 1, 2, apart);
-            } else if (points == 1 && n == 0) {
-                add_residual(b, &now, w, joint, panel, 0, 1, 1, ends, apart);
+                add_of_hub(b, &now, w, joint, panel, ends, apart);
+            } else if (points_of(joint) == 1 && states_of(joint) == 0) {
+                add_of_point(b, &now, w, joint, panel, ends, apart);
             } else {
-                add_residual(b, &now, w, joint, panel, n, points, points, ends, apart);
+                add_of_block(b, &now, w, joint, panel, ends, apart);
             }
         }
     }

@@ -39,7 +39,7 @@ static void OF(start_set)(OF(march_state) *m, const OF(laws) *law, int count)
 }
 
 /* Tables for a degree; 1 / (2 k). */
-static void OF(tabulate_degree)(OF(progress) *b, int degree)
+static BY_ITSELF void OF(tabulate_degree)(OF(progress) *b, int degree)
 {
     b->degree = degree;
     for (int k = 1; k <= degree + SPARE; ++k) {
@@ -76,7 +76,7 @@ static void OF(change_load)(num *c, const num *change, int event, real time)
 
 /* The loads of some sets on the panels of a window, as series, after their changes there, the first of which is `event`. The
  * first one of the next window. */
-static int OF(apply_loads)(OF(march_state) *all, int sets, int (*since)[2], int window, int event)
+static BY_ITSELF int OF(apply_loads)(OF(march_state) *all, int sets, int (*since)[2], int window, int event)
 {
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         const real half = half_length[panel];
@@ -130,7 +130,7 @@ static void OF(march_again)(OF(progress) *b, int degree)
 }
 
 /* Whether some set that is not refused misses more than its share; at the highest degree it is refused. */
-static int OF(misses)(OF(progress) *b)
+static BY_ITSELF int OF(misses)(OF(progress) *b)
 {
     int found = 0, some = 0;
     for (int side = 0; side < OF(parts); ++side) {
@@ -187,7 +187,7 @@ static void OF(keep_window)(OF(progress) *b)
 }
 
 /* How an output weighs waves, added up. */
-static void OF(weight_of)(const OF(laws) *law, int output, num *weight)
+static BY_ITSELF void OF(weight_of)(const OF(laws) *law, int output, num *weight)
 {
     *weight = ZERO + faint; /* gains may underflow */
     for (int k = 0; k < NAME_GAINS; ++k) {

@@ -276,8 +276,8 @@ static void OF(march_bodies)(OF(march_state) *all, OF(march_tables) *tables, con
 }
 
 /* A point without state between at most two ends, in one pass. */
-static void OF(scatter)(OF(march_state) *m, const OF(laws) *law, int joint, int panel, const places *now, int degree,
-                        num *size)
+static BY_ITSELF void OF(scatter)(OF(march_state) *m, const OF(laws) *law, int joint, int panel, const places *now,
+                                  int degree, num *size)
 {
     const int port = first_port[joint], next = first_port[joint + 1] - 1, force = force_on[first_point[joint]];
     const num *const a = m->waves[now->arrived[arrive[port]]][panel];
@@ -334,8 +334,8 @@ static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree
 }
 
 /* Any joint that is no body. */
-static void OF(march_joint)(OF(march_state) *m, OF(march_tables) *table, const OF(laws) *law, int joint, int panel,
-                            const places *now, int degree, const OF(forcing) *by, num *size, num *missed)
+static BY_ITSELF void OF(march_joint)(OF(march_state) *m, OF(march_tables) *table, const OF(laws) *law, int joint, int panel,
+                                      const places *now, int degree, const OF(forcing) *by, num *size, num *missed)
 {
     num s[NAME_WIDEST][NAME_ROW], f[NAME_WIDEST][NAME_ROW], q[NAME_WIDEST][NAME_ROW];
     const int n = states_of(joint), points = points_of(joint), first = first_state[joint];

@@ -188,7 +188,8 @@ enum { HALF = ROWS / 2, PAIRED = parts_batch < 2 ? parts_batch : 2 };
 
 /* Add the squares of what half a block misses of series, from a degree on, to the sums of some parts; `cells` are those of
  * its first row. */
-static void square_up(const wide *series, size_t size, int least, int degree, const real *cells, int group, wide *sum)
+static BY_ITSELF void square_up(const wide *series, size_t size, int least, int degree, const real *cells, int group,
+                                wide *sum)
 {
     const int strands = strands_of(group);
     wide missed[HALF][PAIRED];

@@ -82,10 +82,34 @@ WITHIN void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
     }
 }
 
+/* Any strand of a window, or `more` in it; `weight` grows by what it stays below while it is read. */
+static BY_ITSELF void OF(accumulate_strand)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int s,
+                                            int window, int degree, int more, num *c, num *weight)
+{
+    num rest[OF(parts)];
+    for (int i = 0; i < (degree + 2) * OF(parts) && !more; ++i) {
+        c[i] = ZERO;
+    }
+    for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
+        OF(accumulate_term)(all, inverse, law, t, window, degree, c);
+    }
+    for (int side = 0; side < OF(parts); ++side) {
+        rest[side] = ZERO;
+    }
+    for (int i = 0; i <= degree + 1; ++i) {
+        for (int side = 0; side < OF(parts); ++side) {
+            rest[side] += SIZE_OF(c[i * OF(parts) + side]);
+        }
+    }
+    for (int side = 0; side < OF(parts); ++side) {
+        weight[side] += (real)(4 * (degree + 2)) * rest[side];
+    }
+}
+
 /* The outputs on a window, or `more` in them, as series strand by strand. `weight` grows by what their values stay below
  * while they are read; what is no finite number stays there. */
-static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int window, int degree, int more,
-                           num *c, num *weight)
+static BY_ITSELF void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int window, int degree,
+                                     int more, num *c, num *weight)
 {
     const int size = (degree + 2) * OF(parts);
     int others[NAME_STRANDS + 1], count = 0;
@@ -104,28 +128,7 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
         weight[side] += (real)(4 * (degree + 2)) * TOTAL_OF(sum[side]);
     }
     for (int k = 0; k < count; ++k) {
-        const int s = others[k];
-        num *const here = c + s * size;
-        int terms = 4 * (degree + 2);
-        LOADED_HERE(terms);
-        for (int i = 0; i < size && !more; ++i) {
-            here[i] = ZERO;
-        }
-        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
-            OF(accumulate_term)(all, inverse, law, t, window, degree, here);
-        }
-        num rest[OF(parts)];
-        for (int side = 0; side < OF(parts); ++side) {
-            rest[side] = ZERO;
-        }
-        for (int i = 0; i <= degree + 1; ++i) {
-            for (int side = 0; side < OF(parts); ++side) {
-                rest[side] += SIZE_OF(here[i * OF(parts) + side]);
-            }
-        }
-        for (int side = 0; side < OF(parts); ++side) {
-            weight[side] += (real)terms * rest[side];
-        }
+        OF(accumulate_strand)(all, inverse, law, others[k], window, degree, more, c + others[k] * size, weight);
     }
 }
 
@@ -152,7 +155,7 @@ static void OF(mean_of)(const num *all, int degree, int at, num *mean)
 
 /* Look for the largest value of each output, or nearly: in the middle of sections whose mean, in some set, is half as much
  * again as that of those evaluated, or much more than what was found. */
-static void OF(find_largest)(OF(extremes) *e, const num *all, int window, int degree)
+static BY_ITSELF void OF(find_largest)(OF(extremes) *e, const num *all, int window, int degree)
 {
     for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
         const int output = at % NAME_OUTPUTS, section = at / NAME_OUTPUTS;

@@ -74,7 +74,7 @@ static void climb(const part *p, summit *top, real left, real at_left, real righ
 }
 
 /* A part at BLOCK instants, its ends included. */
-static void survey(const part *p, real *t, real *found)
+static BY_ITSELF void survey(const part *p, real *t, real *found)
 {
     for (int j = 0; j < BLOCK; ++j) {
         t[j] = p->begin + p->length * (offset[j] / (BLOCK - 1));
@@ -177,20 +177,26 @@ static void search(const name_model *m, int output, summit *least, summit *great
     }
 }
 
+/* The peaks of one output. */
+static BY_ITSELF void find_peaks(const name_model *m, int output, real *out)
+{
+    summit least = {-1, -largest_number, not_a_number()};
+    summit greatest = {1, -largest_number, not_a_number()};
+    if (m->built) {
+        search(m, output, &least, &greatest, NULL);
+        const real slack = 4 * unit * larger(magnitude(least.best), greatest.best);
+        search(m, output, &least, &greatest, &slack);
+    }
+    out[0] = m->built ? -least.best : not_a_number();
+    out[1] = least.tau;
+    out[2] = m->built ? greatest.best : not_a_number();
+    out[3] = greatest.tau;
+}
+
 int name_model_peaks(const name_model *model, name_real *out)
 {
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        summit least = {-1, -largest_number, not_a_number()};
-        summit greatest = {1, -largest_number, not_a_number()};
-        if (model->built) {
-            search(model, output, &least, &greatest, NULL);
-            const real slack = 4 * unit * larger(magnitude(least.best), greatest.best);
-            search(model, output, &least, &greatest, &slack);
-        }
-        out[output * 4] = model->built ? -least.best : not_a_number();
-        out[output * 4 + 1] = least.tau;
-        out[output * 4 + 2] = model->built ? greatest.best : not_a_number();
-        out[output * 4 + 3] = greatest.tau;
+        find_peaks(model, output, out + output * 4);
     }
     return !model->built;
 }

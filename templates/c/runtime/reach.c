@@ -9,7 +9,7 @@ enum { OF_VALUES = -1 };
 
 /* From which panel on, counted through all windows, something of its own acts at a joint, or is there at first. Of
  * derivatives, where `of` is what the laws change by: what differs as the parameter does. */
-static int own_start(const laws *law, const laws *of, int lane, int joint)
+static BY_ITSELF int own_start(const laws *law, const laws *of, int lane, int joint)
 {
     int since = NEVER;
     for (int event = NAME_EVENTS - 1; event >= 0; --event) {

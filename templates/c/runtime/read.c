@@ -164,7 +164,7 @@ WITHIN void read_strands(int count, const strands_read *r, const samples *s, siz
 
 /* Samples k ... end - 1, all of them on one section of a window. Whole vectors are written: what is beyond the end is
  * written anew by the runs that follow. */
-static void run(const name_model *m, int window, int section, const samples *s, size_t k, size_t end)
+static BY_ITSELF void run(const name_model *m, int window, int section, const samples *s, size_t k, size_t end)
 {
     strands_read r = {m, window, 0, 0};
     for (int output = 0; output < NAME_OUTPUTS; ++output) {

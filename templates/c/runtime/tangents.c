@@ -129,7 +129,7 @@ static real march_lane(name_tangent *tangent, const laws *law, const laws *slope
 }
 
 /* The start of the derivatives by a parameter. 0, or 1 where they are beyond all numbers. */
-static int start_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane)
+static BY_ITSELF int start_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane)
 {
     march_state *const m = tangent->lane + lane;
     for (int event = 0; event < NAME_EVENTS; ++event) {

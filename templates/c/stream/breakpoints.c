@@ -68,7 +68,7 @@ static void derivatives_at_start(const real *wave, real *known)
 }
 
 /* How wrong a polynomial is then, at most; and the root of the integral of the square. */
-static void interpolation_error(const real *known, real delay, real factor, real *wrong, real *square_root)
+static BY_ITSELF void interpolation_error(const real *known, real delay, real factor, real *wrong, real *square_root)
 {
     /* between an edge and the instant next to it nothing is wrong but there */
     const int at_edge = delay <= instant[0] || delay > instant[DEGREE];
@@ -85,10 +85,30 @@ static void interpolation_error(const real *known, real delay, real factor, real
     *square_root += factor * known[3] * left * kink[5];
 }
 
-/* Loads jump and bend now, at the start of a step: from here on joints send more. */
-static void change_loads(stream *state, const real *jump, const real *bend, real dtau)
+/* What a joint sends into each end that is at rest until loads change, for the last `span` of the panel. */
+static BY_ITSELF void start_joint(stream *state, int joint, const real *acting, real span, real (*more)[SIZE])
 {
     static const real nothing[SIZE] = {0};
+    joint_on_panel on = no_ends;
+    for (int port = 0; port < first_port[joint + 1] - first_port[joint]; ++port) {
+        on.arriving[port] = nothing;
+        on.sent[port] = more[port];
+    }
+    step_joint_of(state, joint, &on, acting, 1, span);
+}
+
+/* How a wave begins, what is rounded of it, and what it makes of waves that are due, where loads bend for so long. */
+static BY_ITSELF void judge_start(stream *state, const real *wave, real factor, real late_by, real span, real *known)
+{
+    derivatives_at_start(wave, known);
+    state->rounded += rounding * factor * size_of(wave);
+    state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
+    state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
+}
+
+/* Loads jump and bend now, at the start of a step: from here on joints send more. */
+static BY_ITSELF void change_loads(stream *state, const real *jump, const real *bend, real dtau)
+{
     const real span = dtau > 0 && dtau < panel ? dtau : panel; /* a load bends for this step, and stays where it is then */
     real acting[(FORCES + 1) * POWERS] = {0};
     real more[LOADED_PORTS + 1][SIZE];
@@ -99,21 +119,11 @@ static void change_loads(stream *state, const real *jump, const real *bend, real
     int all = 0;
     set_forces(state, acting, jump, bend, 1);
     for (int n = 0; n < LOADED; ++n) {
-        const int first = first_port[loaded[n]];
-        const int ports = first_port[loaded[n] + 1] - first;
-        joint_on_panel on = no_ends;
-        for (int port = 0; port < ports; ++port) {
-            on.arriving[port] = nothing;
-            on.sent[port] = more[all + port];
-        }
-        step_joint_of(state, loaded[n], &on, acting, 1, breakpoint == EDGE ? panel : panel - state->time);
-        for (int port = 0; port < ports; ++port, ++all) {
-            const real factor = root_impedance[send[first + port]];
+        start_joint(state, loaded[n], acting, breakpoint == EDGE ? panel : panel - state->time, more + all);
+        for (int port = first_port[loaded[n]]; port < first_port[loaded[n] + 1]; ++port, ++all) {
+            const real factor = root_impedance[send[port]];
             real known[4];
-            derivatives_at_start(more[all], known);
-            state->rounded += rounding * factor * size_of(more[all]);
-            state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
-            state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
+            judge_start(state, more[all], factor, late_by, span, known);
             if (breakpoint == NONE) {
                 interpolation_error(known, state->time, factor, &missed, &energy);
             }

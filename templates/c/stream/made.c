@@ -83,7 +83,7 @@ static void tabulate_matrix(stream *state, int joint)
 }
 
 /* A body. */
-static void tabulate_mass(stream *state, int joint)
+static BY_ITSELF void tabulate_mass(stream *state, int joint)
 {
     const name_made *const made = &state->made;
     const real rate = -made->rates[at_rates[joint]];

@@ -29,7 +29,7 @@ static void lose_truncation(stream *state, int joint, const real *given, const r
 
 /* The state at the end of the panel gains what moves for so long, from rest: velocities, and by how much springs have
  * become longer. */
-static void add_gain(stream *state, int joint, const real *velocities, real span)
+static BY_ITSELF void add_gain(stream *state, int joint, const real *velocities, real span)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     for (int a = first_state[joint]; a < first_state[joint + 1]; ++a) {
@@ -84,20 +84,26 @@ static void step_joints(stream *state, int breakpoint, const real *acting)
     }
 }
 
-/* Waves of a breakpoint that are as small as rounding are left out. Whether there are others. */
+/* A wave of a breakpoint that is as small as rounding is left out. Whether it is not. */
+static BY_ITSELF int drop_small_wave(stream *state, int breakpoint, int number)
+{
+    real *const out = sent_wave(state, breakpoint, number);
+    const real much = root_impedance[number] * size_of(out);
+    const int large = much > least * state->size;
+    state->rounded += rounding * much;
+    if (!large && much > 0) {
+        lose(state, root_panel * much, much);
+        clear(out, SIZE);
+    }
+    return large;
+}
+
+/* All of them. Whether some are left. */
 static int drop_small_waves(stream *state, int breakpoint)
 {
     int left = 0;
     for (int k = 0; k < TRACKS; ++k) {
-        real *const out = sent_wave(state, breakpoint, k);
-        const real much = root_impedance[k] * size_of(out);
-        state->rounded += rounding * much;
-        if (much > least * state->size) {
-            left = 1;
-        } else if (much > 0) {
-            lose(state, root_panel * much, much);
-            clear(out, SIZE);
-        }
+        left |= drop_small_wave(state, breakpoint, k);
     }
     return left;
 }

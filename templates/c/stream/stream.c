@@ -182,6 +182,14 @@ static void advance(stream *state, real dtau, const real *load)
     state->time_low = then.low;
 }
 
+/* Loads are where they jump to. */
+static BY_ITSELF void jump_loads(stream *state, const real *jump)
+{
+    for (int j = 0; j < LOADS; ++j) {
+        state->load[j] += jump[j];
+    }
+}
+
 /* A step, loads and time of which are numbers. */
 static void step_loads(stream *state, real dtau, const real *load)
 {
@@ -207,8 +215,8 @@ static void step_loads(stream *state, real dtau, const real *load)
     if (jumps || bends) {
         change_loads(state, jump, bend, dtau);
     }
-    for (int j = 0; brief && j < LOADS; ++j) {
-        state->load[j] += jump[j];
+    if (brief) {
+        jump_loads(state, jump);
     }
     if (dtau > 0) {
         advance(state, brief ? dtau / 2 : dtau, load);

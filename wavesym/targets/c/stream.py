@@ -13,6 +13,7 @@ from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants, c_literal
 
+_NUMBERS = ("real.h", "apart.h")
 _SERIES = ("root.h", "series.h", "joint.c")
 """What stands above the names of tables in a state."""
 
@@ -30,8 +31,8 @@ def source(scene: Description, program: Program) -> str:
         "c/stream/stream.c.j2",
         scene=scene,
         tables=program_tables("stream/tables.h", scene, known),
-        numbers=kernel("real.h", scene),
-        series=kernels(scene, *_SERIES),
+        numbers=kernels(scene, *_NUMBERS),
+        series=kernels(scene, *_SERIES, above=_NUMBERS),
         kernel=kernels(scene, "stream/made.c" if laws else "stream/stream.c", above=_SERIES),
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
