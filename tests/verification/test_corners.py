@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
@@ -213,6 +214,27 @@ def test_what_happens_just_at_the_end_and_what_does_at_the_start_are_not_taken_f
     assert all(outcome.passed for outcome in outcomes)
     wrong = known(*changed(table, "friction"))
     assert not all(outcome.passed for outcome in judged(integrations.corner_changes(wrong)))
+
+
+def test_values_are_compared_after_what_happens_at_corners_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On the first grid on which the same happens nothing is off fronts after tau = 2.15: a finer one is taken."""
+    monkeypatch.setattr("wavesym.verification.outcome.FINE", 1e-4)
+    parts: list[Any] = [{"mass": 1, "friction": "1/2", "name": "m"}, {"rod": 1}, {"mass": 1, "name": "n"}]
+    loads = [{"at": "m", "times": [0], "ramps": ["1/8"]}, {"at": "n", "times": [0], "ramps": ["1/10"]}]
+    system = {"type": "chain", "parts": [*parts, {"rod": "7/5"}, "fixed"]}
+    table = {"name": "st", "system": system, "load": loads, "output": {"until": 5, "velocity": ["m"]}}
+    seen = known(table)
+    right = judged(integrations.midpoints(seen))
+    assert [(each.verdict, float(each.cells["to"]) > 4.5) for each in right] == [("PASS", True)]
+    assert all(each.integral is not None and each.integral.judges for each in right)
+
+    class WrongAtLast(Reference):
+        def values(self, taus: Sequence[float]) -> list[list[float]]:
+            rows = super().values(taus)
+            return [[value * (1.01 if tau > 4 else 1) for tau, value in zip(taus, row, strict=True)] for row in rows]
+
+    monkeypatch.setattr(integrations, "Reference", WrongAtLast)
+    assert {each.verdict for each in integrations.midpoints(seen)} == {"FAIL"}
 
 
 def test_what_happens_on_grids_is_the_same_on_all() -> None:
