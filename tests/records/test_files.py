@@ -84,6 +84,12 @@ def test_an_at2_file_with_two_units_is_refused(tmp_path: Path):
     with pytest.raises(SceneError, match=r"line 3: the samples have two units, g and cm/s\^2; write one of them"):
         read_record(made(tmp_path, twice))
     assert read_record(made(tmp_path, twice.replace("(CM/SEC/SEC)", "(g)"))).unit == "g"
+    for text in (
+        twice.replace("(CM/SEC/SEC)", "AND UNITS OF CM/S2"),
+        f"PEAK IN UNITS OF CM/S2\n{AT2.split(chr(10), 1)[1]}",
+    ):
+        with pytest.raises(SceneError, match=r"line 3: the samples have two units, (g|cm/s\^2) and (g|cm/s\^2); write"):
+            read_record(made(tmp_path, text))
 
 
 def test_el_centro_is_that_of_another_package():

@@ -51,24 +51,29 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     if len(samples) < count:
         what = f"the file ends after {len(samples)} numbers of the {count} of NPTS on line {_HEADER}; write all of them"
         raise damage_error(file, places[-1] if places else _HEADER, what)
-    units = ((_read_unit(file, number, line), number) for number, line in enumerate(lines[: _HEADER - 1], 1))
-    unit, head = next((unit_there for unit_there in units if unit_there[0]), ("", _HEADER - 1))
+    unit, head = _read_unit(file, lines[: _HEADER - 1])
     return RecordFile(
         file, "AT2", tuple(samples), tuple(written), tuple(places), unit, clock="s", spacing=step, head=head
     )
 
 
-def _read_unit(file: str, number: int, line: str) -> str:
-    """The unit of samples that a line of text says; "" where it says none that is known. SceneError where two."""
-    for words in _UNITS.findall(line):
-        found = [unit for unit in map(_unit, words) if unit]
-        if len(set(found)) > 1:
-            raise damage_error(
-                file, number, f"the samples have two units, {found[0]} and {found[1]}; write one of them"
-            )
-        if found:
-            return found[0]
-    return ""
+def _read_unit(file: str, lines: Sequence[str]) -> tuple[str, int]:
+    """The unit of samples that lines of text say, and on which; "" where they say none that is known.
+
+    Raises:
+        SceneError: they say two.
+    """
+    found = [
+        (unit, number)
+        for number, line in enumerate(lines, 1)
+        for words in _UNITS.findall(line)
+        for unit in map(_unit, words)
+        if unit
+    ]
+    for unit, number in found:
+        if unit != found[0][0]:
+            raise damage_error(file, number, f"the samples have two units, {found[0][0]} and {unit}; write one of them")
+    return found[0] if found else ("", len(lines))
 
 
 def _unit(word: str) -> str:
