@@ -269,7 +269,7 @@ def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
 
 def _reaches(instants: Instants, grid: MidpointGrid, until: float) -> bool:
     """Whether there are instants enough, and some of them in the last quarter of the time."""
-    late = np.count_nonzero(instants * float(grid.step) > _LATE_PART * until)
+    late = int(np.count_nonzero(instants * float(grid.step) > _LATE_PART * until))
     return len(instants) >= _FEWEST_INSTANTS and late >= _FEWEST_LATE
 
 
