@@ -4,11 +4,13 @@ import re
 
 import pytest
 
+from wavesym.exact.reference import Reference
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
 from wavesym.verification import outcome, programs, report
 from wavesym.verification.checks import CHECKS
-from wavesym.verification.integrations import collocation_beyond, corner_changes, differences, elements
+from wavesym.verification.integrations import collocation_beyond, corner_changes, differences, elements, midpoints
+from wavesym.verification.reference import known_outputs
 
 CLOSED = [Request("closed")]
 
@@ -78,6 +80,21 @@ def test_an_output_that_is_0_throughout():
     _, integration, *_ = found(text)
     assert integration[0]["at 4N"] == "0"
     assert float(integration[1]["at 4N"]) > 0
+
+
+def test_what_friction_holds_throughout_is_seen(monkeypatch):
+    """Steps have it move by rounding, 1e-21, which was no zero and far less than what they may be wrong by."""
+    monkeypatch.setattr(outcome, "FINE", 1e-3)
+    held = {"mass": 3, "spring": 1, "friction": "1/3", "name": "m"}
+    parts = [held, {"friction": "1/6"}, {"mass": 1, "name": "n", "velocity": 0}, {"rod": 1}, "fixed"]
+    loads = [{"at": "n", "times": [0, 1], "steps": ["1/5", "-1/9"]}]
+    output = {"until": 4, "velocity": ["m", "n"]}
+    truth = known_outputs(lower(Scene(name="z", system={"type": "chain", "parts": parts}, load=loads, output=output)))
+    for at_rest in midpoints(truth)[:1] + differences(truth)[:1]:
+        assert 0 < float(at_rest.cells["at 4N"]) < 1e-18
+        assert report._judges(at_rest.integral, truth)
+    monkeypatch.setattr(Reference, "values", lambda self, taus: [[1e-20] * len(taus)] * 2)
+    assert not report._judges(midpoints(truth)[0].integral, truth)
 
 
 @pytest.mark.slow

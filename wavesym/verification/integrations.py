@@ -52,11 +52,8 @@ MOST_MOVED = 2e8
 # steps lag ever further behind: beyond this tau they would have to be shorter
 _LONGEST = 60.0
 
-# of the instants away from fronts, so many are enough to begin with, and so many are looked at
-_FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
-
-# so many of them, at least, are looked for in the last quarter of the time
-_LATE_PART, _FEWEST_LATE = 3 / 4, 5
+# of the instants away from fronts, so many are looked at
+_MOST_INSTANTS = 200
 
 # steps tell nothing of springs that swing more radians than this in one
 _SWING = 0.25
@@ -253,7 +250,7 @@ def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
             return _NO_GRID
         first, struck = found
     # after what happens at corners, too: that is known better on finer grids, and where its fronts are
-    while not _reaches(first.instants(until, struck, reach), first, until) and first.finer(8).cost(until) <= MOST_MOVED:
+    while not first.tells(until, struck, reach) and first.finer(8).cost(until) <= MOST_MOVED:
         found = first.finer(2).resolve_changes(until, MOST_MOVED) if struck else None
         first, struck = found or (first.finer(2), struck)
     finest = first
@@ -265,12 +262,6 @@ def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
     if not len(instants):
         return f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
     return Start(first, until, struck, instants)
-
-
-def _reaches(instants: Instants, grid: MidpointGrid, until: float) -> bool:
-    """Whether there are instants enough, and some of them in the last quarter of the time."""
-    late = int(np.count_nonzero(instants * float(grid.step) > _LATE_PART * until))
-    return len(instants) >= _FEWEST_INSTANTS and late >= _FEWEST_LATE
 
 
 def _grid(model: Model) -> MidpointGrid:

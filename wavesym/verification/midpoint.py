@@ -42,6 +42,9 @@ _FINEST_ALIGNED = 128
 # steps before and after an instant that what is read there rests on
 _REACH = 1
 
+# of the instants away from fronts, so many are enough to begin with, and so many in the last quarter of the time
+_FEWEST, _FEWEST_LATE = 20, 5
+
 # points and instants closer than this are the same, in doubles
 _SAME = 1e-6
 
@@ -125,6 +128,12 @@ class MidpointGrid:
                     after = passed % window
                     free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
+
+    def tells(self, until: float, struck: Sequence[tuple[Change, float]], reach: int) -> bool:
+        """Whether there are `instants` enough, and some of them late."""
+        instants = self.instants(until, struck, reach)
+        late = int(np.count_nonzero(instants * float(self.step) > 3 / 4 * until))
+        return len(instants) >= _FEWEST and late >= _FEWEST_LATE
 
     def resolve_changes(
         self, until: float, most: float, sharp: float = inf

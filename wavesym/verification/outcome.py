@@ -235,7 +235,9 @@ class Integration:
         steps, refined = self.refine(truths)
         outcomes = []
         for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
-            integral = IntegratedOutput(taus, each.values, each.error_bound * each.scale, self.clear)
+            is_still = truth is not None and not np.any(truth.values) and each.best <= each.rounding
+            values = np.zeros_like(each.values) if is_still else each.values  # 0, but for rounding
+            integral = IntegratedOutput(taus, values, each.error_bound * each.scale, self.clear)
             note = "" if each.method_error <= FINE else too_coarse(scene, self.name)
             right = integral.judges if truth is None else each.is_right
             lag = integral.steepest * self.late * self.coarsest / (4 * steps)
