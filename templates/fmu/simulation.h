@@ -426,11 +426,11 @@ static verdict deserialize(simulation *s, const void *bytes, size_t size, void *
     if (kept == NULL) {
         return lack(s, "memory");
     }
-    if (size >= KEPT_SIZE) {
+    if (size == KEPT_SIZE) {
         memcpy(&check, from + CHECK_PLACE, sizeof check);
         memcpy(kept, from + KEPT_PLACE, sizeof *kept);
     }
-    if (size < KEPT_SIZE || memcmp(from, TOKEN, sizeof TOKEN) != 0 || check != checksum(kept)) {
+    if (size != KEPT_SIZE || memcmp(from, TOKEN, sizeof TOKEN) != 0 || check != checksum(kept)) {
         snprintf(s->said, sizeof s->said, "a serialized state: not one of this model, or damaged");
         found = WRONG;
     } else {

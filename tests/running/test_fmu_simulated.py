@@ -140,7 +140,7 @@ def test_reset_state_and_a_second_instance(gears):
     assert stepped(first, points[16:], PANEL) == whole[16:]
     second.back(second.of_bytes(kept))
     assert stepped(second, points[16:], PANEL) == whole[16:]
-    for damaged in (kept[:-1], kept[:99] + bytes([kept[99] ^ 1]) + kept[100:], b"0" + kept[1:]):
+    for damaged in (kept[:-1], kept + bytes(8), kept[:99] + bytes([kept[99] ^ 1]) + kept[100:], b"0" + kept[1:]):
         with pytest.raises(Exception, match="status 3"):
             second.of_bytes(damaged)
     for instance in (first, second):
