@@ -185,6 +185,8 @@ DAMAGED = [
     (AT2.replace(".0200", "-.02"), "line 4: DT = -.02 is not positive; write more than 0"),
     (AT2.replace(".0200", "+-e"), "line 4: no NPTS and DT; write them as in"),
     (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: no NPTS and DT; write them as in"),
+    (AT2.replace(".0200 SEC", ".0200 SEC, DT= .0100 SEC"), "line 4: DT stands twice; write it once"),
+    (AT2.replace("NPTS=   5, DT=   .0200 SEC", "5 .02 NPTS, DT, npts"), "line 4: NPTS stands twice; write it once"),
     (HEAD + "NPTS=   5, DT=   .0200 SEC\n", "line 4: the file ends after 0 numbers"),
     # no numbers
     (AT2.replace("3.", "nan"), "line 5: word 3 is no decimal; write numbers alone"),

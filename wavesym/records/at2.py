@@ -15,6 +15,7 @@ from wavesym.records.record_file import MOST_SAMPLES, RecordFile, bare, damage_e
 _HEADER = 4
 _NAMED = re.compile(r"NPTS *= *([0-9]+)[ ,]+DT *= *([+-]?[0-9.]+(?:[eEdD][+-]?[0-9]+)?)(.*)", re.IGNORECASE)
 _BARE = re.compile(r"([0-9]+)[ ,]+([+-]?[0-9.]+(?:[eEdD][+-]?[0-9]+)?)((?:[ ,].*)?)")
+_COUNTS = re.compile(r"\b(?:NPTS|DT)\b", re.IGNORECASE)
 _NAMES = re.compile(r"[ ,]*NPTS *, *DT\b", re.IGNORECASE)  # what bare numbers are
 _CLOCKS = {
     **dict.fromkeys(("", "S", "SEC", "SECS", "SECOND", "SECONDS"), Fraction(1)),
@@ -99,6 +100,8 @@ def _read_counts(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
         raise damage_error(file, _HEADER, f"DT = {bare(found[2])} is not positive; write more than 0")
     if not found[1].strip("0"):
         raise damage_error(file, _HEADER, "NPTS = 0 is no record; write at least 1")
+    if again := _COUNTS.search(_NAMES.sub("", found[3])):
+        raise damage_error(file, _HEADER, f"{again[0].upper()} stands twice; write it once")
     clock = _clock(file, found[3])
     if len(found[1]) > 9 or int(found[1]) > MOST_SAMPLES:
         raise damage_error(file, _HEADER, f"NPTS = {bare(found[1])} is too many; write at most {MOST_SAMPLES}")
