@@ -4,6 +4,7 @@ there are none; and nothing in such a folder is ever run."""
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import os
 import pickle
@@ -263,6 +264,49 @@ def test_no_codec_that_a_store_names_is_run(
     with pytest.raises(Exception):  # noqa: B017, PT011 whatever comes of it
         np.asarray(zarr.open_array(at, mode="r")[:1])
     assert witness.exists()
+
+
+NOT_OF_IT: list[dict[str, Any]] = [
+    {"left": list(range(1000))},
+    {"left": [-1]},
+    {"left": [4]},
+    {"left": [2, 2]},
+    {"failed": [{"case": 10**30, "values": {}, "reason": "none"}]},
+    {"left": [2], "failed": [{"case": 2, "values": {}, "reason": "none"}]},
+]
+
+
+@pytest.mark.parametrize("change", NOT_OF_IT)
+def test_a_mark_that_speaks_of_other_cases_is_made_again(
+    folder: Path, computed: list[int], change: dict[str, Any]
+) -> None:
+    """Its hash is right: the status said that -995 cases were done."""
+    every = files(folder)
+    (path,) = (path for path in (folder / "done").iterdir() if json.loads(path.read_text())["batch"] == 2)
+    mark = json.loads(path.read_text()) | change
+    mark.pop("seal")
+    path.write_text(json.dumps({**mark, "seal": _seal(mark)}, indent=1) + "\n")
+    with pytest.raises(DamagedError, match=rf"{path.name} damaged; 1 of 5 cases have to be computed again"):
+        status(folder)
+    assert run(SWEEP, folder) == 1
+    assert computed == [2]
+    assert files(folder) == every
+
+
+@pytest.mark.parametrize("name", [f"{NAME}/max/2.0", f"{NAME}/.zattrs"])
+def test_what_is_too_large_is_not_read(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """A chunk of 64 GB was hashed whole, which took minutes, before its size was looked at."""
+    every, whole, read = files(folder), hashlib.file_digest, []
+
+    def noted(file: Any, algorithm: str) -> Any:
+        read.append(Path(file.name).relative_to(folder).as_posix())
+        return whole(file, algorithm)
+
+    (folder / name).write_bytes((folder / name).read_bytes() + b" ")
+    monkeypatch.setattr(hashlib, "file_digest", noted)
+    assert run(SWEEP, folder) == 1
+    assert name not in read
+    assert files(folder) == every
 
 
 ABSURD: list[dict[str, Any]] = [

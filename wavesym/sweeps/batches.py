@@ -62,6 +62,13 @@ class Batches:
         """The indices of its cases, in order."""
         return list(product(*(range(part.start, part.stop) for part in self.region(batch))))
 
+    def holds(self, batch: int, case: int) -> bool:
+        """Whether a case, by its number in the sweep, is in it."""
+        if not 0 <= case < prod(self.shape):
+            return False
+        place = np.unravel_index(case, self.shape)
+        return all(part.start <= k < part.stop for k, part in zip(place, self.region(batch), strict=True))
+
     def groups(self, batch: int) -> Iterator[list[Place]]:
         """Its cases as they share work. Those of a group depend on each other to the last bits, and on no others."""
         places = self.places(batch)

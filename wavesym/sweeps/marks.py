@@ -30,6 +30,15 @@ class BatchMark(SealedFile):
     failed: list[FailedCase]
     left: list[int]
 
+    def is_of(self, batches: Batches, batch: int) -> bool:
+        """Whether it speaks of a batch: of as many cases, each at most once, and of no others."""
+        said = [*self.left, *(each.case for each in self.failed)]
+        return (
+            (self.batch, self.cases) == (batch, batches.count(batch))
+            and len(set(said)) == len(said)
+            and all(batches.holds(batch, case) for case in said)
+        )
+
 
 @dataclass(frozen=True)
 class Marks:
@@ -52,6 +61,6 @@ class Marks:
     def get(self, name: str, batches: Batches, batch: int) -> BatchMark | None:
         """The mark of a batch; None where there is none. DamagedError for one that the disk has not kept."""
         mark = BatchMark.read(self.path(name))
-        if mark and (mark.batch, mark.cases) != (batch, batches.count(batch)):
+        if mark and not mark.is_of(batches, batch):
             raise DamagedError(f"{self.path(name)}: damaged")
         return mark

@@ -88,9 +88,7 @@ class Store:
 
     def _hash(self, name: str, batch: int) -> str | None:
         """Of a chunk; None where there is none, "" of a file that is no chunk of this array."""
-        path = self.path / self.chunk(name, batch)
-        found = file_hash(path)
-        return found and (found if path.stat().st_size == 8 * prod(self._shape(name)) else "")
+        return file_hash(self.path / self.chunk(name, batch), 8 * prod(self._shape(name)))
 
     def read(self, name: str, batch: int) -> Array:
         """The values of a batch in an array, (dimensions, rest); NaN where there is no chunk."""
@@ -105,10 +103,13 @@ class Store:
         return whole[tuple(slice(part.stop - part.start) for part in self.batches.region(batch))]
 
 
-def file_hash(path: Path) -> str | None:
-    """Of a file; None where there is none, "" where a file is in the place of its folder. NoFileError as there."""
+def file_hash(path: Path, size: int | None = None) -> str | None:
+    """Of a file; None where there is none, "" where a file is in the place of its folder, or one has another size than
+    it should: it is not read then, however large it is. NoFileError as there."""
     try:
         refuse_other(path)
+        if size is not None and path.stat().st_size != size:
+            return ""
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except FileNotFoundError:
@@ -146,7 +147,7 @@ def lay_out(folder: Path, plan: SweepPlan, batches: Batches) -> dict[str, str]:
         if each not in files and each not in names and not (parent in names and parent and _CHUNK.fullmatch(name)):
             raise WavesymError(f"{path / each}: not of this sweep; move it elsewhere")
     for each, known in files.items():
-        if file_hash(path / each) != known:
+        if file_hash(path / each, (draft / each).stat().st_size) != known:
             (path / each).parent.mkdir(exist_ok=True)
             os.replace(draft / each, path / each)
     shutil.rmtree(draft)
