@@ -214,3 +214,27 @@ def test_a_load_of_many_steps_is_wrong_by_no_more_than_its_bound(change, tmp_pat
     lost = [sum(map(Fraction, changes[: k + 1])) - Fraction(load[k]) for k in range(STEPS)]
     assert lost[-1] > 60 * Fraction(2) ** -52
     assert all(lost[k] <= Fraction(error[k]) for k in range(STEPS)) == (change is None)
+
+
+PULSE = wavesym.Scene(
+    name="pulse",
+    system={"type": "chain", "parts": [{"mass": 1, "name": "m"}, {"rod": 1}, "absorbing"]},
+    load=[{"at": "m", "times": ["0.999999", "1.000001", "1.000002"], "ramps": [1, -3, 2]}],
+    output={"until": "3/2", "tolerance": "1e-13", "velocity": ["m"]},
+)
+AT = "since_panel[panel * PULSE_PANELS + since[1]]"
+CANCELLED = [
+    ("(panel < since[1] ? 1 : 0)", "0"),
+    (AT, f"({AT} - (panel < since[1] ? window_length : (real)0))"),
+]
+"""The same, as the windows between less how much earlier a panel starts: small differences of large numbers."""
+
+
+@pytest.mark.parametrize("changes", [[], CANCELLED], ids=["right", "cancelled"])
+def test_the_time_since_a_load_changed_keeps_its_digits(changes, tmp_path):
+    """A load of three millionths begins one before a window does: what its time loses is lost for good."""
+    made = BuiltModel(PULSE, ["mass"], tmp_path, changes)
+    status, bound = made.bound(1)
+    assert status == 0
+    assert bound < 1e-12
+    assert (made.errors(PULSE) <= bound) == (not changes)

@@ -108,10 +108,10 @@ static int is_block(int joint)
     return NAME_SQUARES > 0 && at_square[joint + 1] > at_square[joint];
 }
 
-/* The time since a load changed, at the start of a panel. */
+/* The time since a load changed, at the start of a panel: a sum, so that nothing cancels. */
 static real time_since(const int *since, int window, int panel)
 {
-    return (real)(window - since[0]) * window_length + since_panel[panel * NAME_PANELS + since[1]];
+    return (real)(window - since[0] - (panel < since[1] ? 1 : 0)) * window_length + since_panel[panel * NAME_PANELS + since[1]];
 }
 
 /* Whether an event, of those in order, is on a panel. */

@@ -95,7 +95,7 @@ extern const int steps[];
 extern const int ring[];
 /* whether a state is a velocity */
 extern const int is_mass[];
-/* half the length of a panel; what its start is later than that of another: since_panel[panel*PANELS + other] */
+/* half the length of a panel; how long before its start another one began last: since_panel[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since_panel[];
 /* changes of loads, in order: a weight times an amplitude times a strength is added to a power of the time since, or

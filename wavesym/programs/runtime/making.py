@@ -188,7 +188,11 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> Tables:
         "ring": firsts(track.steps + 1 for track in plan.tracks),
         "is_mass": (*_masses(made), 0),
         "half_length": reals(panel.length / 2 for panel in plan.panels),
-        "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+        "since_panel": reals(
+            panel.start - other.start + (plan.step if panel.start < other.start else 0)
+            for panel in plan.panels
+            for other in plan.panels
+        ),
         "event_window": tuple(event.window for event in events),
         "event_panel": tuple(event.panel for event in events),
         "event_force": tuple(event.force for event in events),
