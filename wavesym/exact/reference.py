@@ -76,9 +76,10 @@ class Reference:
             self._motion.refuse_long(len(taus))
         try:
             if self.model.network.corners:
+                most = max(self._first_bits, _MOST_KNOWN)
                 return [
-                    self._values_to_known_accuracy(source, whole, taus)
-                    for source, whole in zip(self._sources(taus), self._sources(), strict=True)
+                    values(source, taus, self._first_bits, size * NEGLIGIBLE_WAVE, most)
+                    for source, size in zip(self._sources(taus), self._known_sizes, strict=True)
                 ]
             return [values(source, taus, self._first_bits) for source in self._sources(taus)]
         except RangeError:
@@ -87,12 +88,14 @@ class Reference:
             helps = what_helps(self.model, self.real)
             raise CostError(f"output.until: for values right to the last bit, {error} ({helps} helps)") from None
 
-    def _values_to_known_accuracy(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
-        """Where contacts open and close, as far as it is known when they do: to 2^-200 of the largest value."""
-        size = Balls(whole(self._first_bits)).largest(rational(self.tau_max))
-        if not size > 0:  # it may be 0 throughout
-            size = self._motion.size
-        return values(source, taus, self._first_bits, size * NEGLIGIBLE_WAVE, max(self._first_bits, _MOST_KNOWN))
+    @cached_property
+    def _known_sizes(self) -> list[arb]:
+        """What outputs come to at most where contacts open and close: values are known to 2^-200 of that.
+
+        An output that may be 0 throughout is as large as waves are.
+        """
+        found = [Balls(whole(self._first_bits)).largest(rational(self.tau_max)) for whole in self._sources()]
+        return [size if size > 0 else self._motion.size for size in found]
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout.
