@@ -27,7 +27,7 @@ class Progress:
     def __init__(self, what: str) -> None:
         self.what = self._doing = what
         self._detail = ""
-        self._has_warned = False
+        self._warned: set[str] = set()
         self._start = monotonic()
 
     def tell(self, step: str) -> None:
@@ -38,10 +38,10 @@ class Progress:
         """How far that step has come."""
         self._detail = f", {detail}"
 
-    def warn(self, text: str) -> None:
-        """A line that stays, on a terminal or not: why this takes long. Only the first one is written."""
-        if not self._has_warned:
-            self._has_warned = True
+    def warn(self, text: str, about: str) -> None:
+        """A line that stays, on a terminal or not: why this takes long. Only the first one about a thing is written."""
+        if about not in self._warned:
+            self._warned.add(about)
             with suppress(OSError):
                 _put(f"{chr(13) * sys.stderr.isatty()}{self.what}: {text}\n")
 
@@ -102,16 +102,22 @@ def tell_detail(detail: str) -> None:
         _running[-1].tell_detail(detail)
 
 
-def warn_long(text: str) -> None:
+def warn_long(text: str, about: str = "") -> None:
     """Say why what is being done takes long, once, wherever standard error leads; nothing where no command does it."""
     if _running and sys.stderr is not None:
-        _running[-1].warn(text)
+        _running[-1].warn(text, about)
 
 
 def warn_count(count: int, what: str, seconds: float, helps: str) -> None:
     """Say about how long so many take, at `seconds` each, where that is long; `helps` is what takes less."""
     if (total := count * seconds) > LONG:
-        warn_long(f"{count} {what} take about {total:.0f} s ({helps})")
+        warn_long(f"{count} {what} take about {total:.0f} s ({helps})", what)
+
+
+def warn_part(part: float, seconds: float, what: str, helps: str) -> None:
+    """The same of what takes so many `seconds` for a part of it, as soon as these tell something."""
+    if seconds > QUIET and part > 0 and (total := seconds / part) > LONG:
+        warn_long(f"{what} takes about {total:.0f} s ({helps})", what)
 
 
 def _put(text: str) -> None:

@@ -15,11 +15,13 @@ import pytest
 from tests.papers.small import Paper
 from wavesym import progress
 from wavesym.cli import main
+from wavesym.exact.contacts import schedule
 from wavesym.exact.contacts.events import events
 from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
 from wavesym.results import frequency_response, rows
+from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
@@ -229,6 +231,27 @@ def test_many_instants_say_how_long_they_take_where_there_is_no_terminal(
         r"run drive_m1: 12 instants of 5 outputs, right to the last bit, take about \d+ s \(.*`generate`\)\n",
         capsys.readouterr().err,
     )
+
+
+def test_a_long_search_for_events_says_how_long_it_takes_where_there_is_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before there is any other line, which said only how long values take after it."""
+    parts = [{"mass": 1, "velocity": 1, "friction": "1/4", "name": "m"}, {"rod": 1}, "fixed"]
+    scene = Scene(name="slides", system={"type": "chain", "parts": parts}, output={"until": 3, "velocity": ["m"]})
+    with progress.progress("run slides"):
+        events(lower(scene))
+    assert capsys.readouterr().err == ""
+    schedule.outcome.cache_clear()
+    monkeypatch.setattr(progress, "LONG", 0.0)
+    monkeypatch.setattr(progress, "QUIET", 0.0)
+    with progress.progress("run slides"):
+        events(lower(scene))
+        rows.csv_lines(Response(lower(scene)), 3, None)
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 2
+    assert re.fullmatch(r"run slides: to find all events takes about \d+ s \(a shorter horizon takes less\)", told[0])
+    assert told[1].startswith("run slides: 3 instants of 1 outputs")
 
 
 def test_how_many_instants_are_done_is_seen(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, soon: None) -> None:

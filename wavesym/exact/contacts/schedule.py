@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from time import monotonic
 from typing import TypeVar
 
 from flint import ctx, fmpq
@@ -17,7 +18,7 @@ from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replay
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
-from wavesym.progress import tell_detail
+from wavesym.progress import tell_detail, warn_part
 
 # what is tried: bits, and whether what decays fast is left out where it is lost among rounding errors (if it was not,
 # the second is the first)
@@ -161,8 +162,10 @@ def _grazing_error(network: Network, undecided: UndecidedError, bits: int) -> Gr
 
 
 def _whole(search: Search) -> Schedule:
+    start = monotonic()
     for passed in search.steps():
         tell_detail(f"events up to {passed:.0%} of the time, with {ctx.prec} bits")
+        warn_part(passed, monotonic() - start, "to find all events", "a shorter horizon takes less")
     return Schedule(
         {number: course.stages for number, course in search.courses.items()},
         {number: course.reach for number, course in search.courses.items()},
