@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -33,7 +35,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.outcome import REFUSED, Outcome
-from wavesym.verification.problem import Change, LinkLaw, corner_problem, match_all
+from wavesym.verification.problem import BranchChange, Change, LinkLaw, corner_problem, match_all
 from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 CHECKS = (integrations.midpoints, integrations.differences, integrations.corner_changes, checks.invariants)
@@ -187,7 +189,8 @@ def test_a_contact_without_force_as_both_sides_come_to_rest_is_closed(monkeypatc
         each.subject for each in judged(integrations.corner_changes(known(pulled, COMES_TO_REST))) if not each.passed
     ] == ["1/2 opens"]
     monkeypatch.setattr(link_pulls, "_TURNED", 0.0)
-    assert [each.subject for each in integrations.corner_changes(seen) if not each.passed] == ["1/2 opens"]
+    anew = replace(seen)
+    assert [each.subject for each in integrations.corner_changes(anew) if not each.passed] == ["1/2 opens"]
 
 
 def test_a_mass_comes_to_rest_on_a_joint_that_rubs() -> None:
@@ -235,6 +238,27 @@ def test_values_are_compared_after_what_happens_at_corners_too(monkeypatch: pyte
 
     monkeypatch.setattr(integrations, "Reference", WrongAtLast)
     assert {each.verdict for each in integrations.midpoints(seen)} == {"FAIL"}
+
+
+def test_what_lasts_less_than_some_steps_of_the_coarsest_grid_counts_on_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Finer grids saw it and coarser ones did not: what happened was not the same until the finest of all."""
+    problem = corner_problem(drawn(3).model)
+    tried = set[float]()
+
+    def solve(grid: MidpointGrid, steps: int, _: Any) -> tuple[None, SimpleNamespace]:
+        step = float(grid.step)
+        tried.add(step)
+        branches = ((0, 1, 1.0), (1, 0, 1.02), (0, 1, 2.0))
+        return None, SimpleNamespace(changes=[BranchChange(0, a, b, round(tau / step)) for a, b, tau in branches])
+
+    monkeypatch.setattr(MidpointGrid, "_solve", solve)
+    found = MidpointGrid(problem, Fraction(1, 64)).resolve_changes(4.0, 1e9)
+    assert found is not None
+    assert [(change.tau, slack < 0.02) for change, slack in found[1]] == [(2.0, True)]
+    assert tried == {1 / 64, 1 / 128, 1 / 256}
+    again = MidpointGrid(problem, Fraction(1, 2048)).resolve_changes(4.0, 1e9)
+    assert again is not None
+    assert [change.tau for change, _ in again[1]] == pytest.approx([1, 1.02, 2], abs=1e-3)
 
 
 def test_what_happens_on_grids_is_the_same_on_all() -> None:

@@ -5,17 +5,15 @@ An integration is refined until it tells its own error. It judges the reference,
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from math import inf
 
 import numpy as np
 
 from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
-from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
@@ -23,12 +21,14 @@ from wavesym.methods.network_problem import linear_problem
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
+from wavesym.verification.corner_history import CLOSE, CornerHistory, compare_events
 from wavesym.verification.link_pulls import LinkPulls
 from wavesym.verification.midpoint import LATE, Instants, LinkMethod, MidpointGrid
-from wavesym.verification.outcome import Integration, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
-from wavesym.verification.problem import Change, KnownChanges, corner_problem, match_changes
+from wavesym.verification.outcome import Integration, Outcome, Rule, Solution, Truth, refused_outcomes
+from wavesym.verification.problem import Change, corner_problem, match_changes
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
 from wavesym.verification.return_mapping import REACH, ReturnMapping
+from wavesym.verification.stretches import Stretch, middles
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -36,9 +36,6 @@ _MOST_POINTS = 96
 
 # integrations take no more doubles than that, and no more panels where contacts open and close
 _MOST_DOUBLES, _MOST_PANELS = 4_000_000, 400
-
-# values are not compared where a front that a contact causes is as close as this; closer instants are the same
-_CLOSE = 1e-7
 
 # steps are this part, at most, of the time that friction takes to stop what moves at first
 _STOPPED = 1 / 8
@@ -119,7 +116,7 @@ class _Solutions:
                 why = undecided
                 continue
             if (found := match_changes(quarter, half)) is not None and match_changes(half, coarse) is not None:
-                self.corner_changes = [(change, slack + _CLOSE) for change, slack in found]
+                self.corner_changes = [(change, slack + CLOSE) for change, slack in found]
                 return
         raise why
 
@@ -136,7 +133,7 @@ class _Solutions:
         problem, far = self._problem, np.full((len(self._problem.readings), len(taus)), np.inf)
         for motion in [self.motion(k * self.points) for k in (1, 2, 4)] if self.has_contacts else []:
             far = np.minimum(far, [motion.distance(reading, taus) for reading in problem.readings])
-        return np.array([np.all(far[weights != 0] > _CLOSE, axis=0) for weights in problem.weights])
+        return np.array([np.all(far[weights != 0] > CLOSE, axis=0) for weights in problem.weights])
 
     def method(self, instants: Sequence[Sequence[float]]) -> Integration:
         """The outputs at instants of each."""
@@ -196,12 +193,12 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
 
 @dataclass(frozen=True)
 class Start:
-    """The coarsest grid, up to which tau it is taken, what happens at corners, and instants away from fronts."""
+    """The coarsest grid, up to which tau it is taken, what happens at corners, and instants of outputs off fronts."""
 
     grid: MidpointGrid
     until: float
     corner_changes: Sequence[tuple[Change, float]]
-    instants: Instants
+    instants: Sequence[Instants]
 
     def outcomes(
         self,
@@ -211,17 +208,20 @@ class Start:
         links: LinkMethod,
     ) -> list[Outcome]:
         """A row for each output, by what links pull."""
-        grid, problem, instants = self.grid, self.grid.problem, self.instants
-        taus = [grid.tau(k) for k in instants.tolist()]
+        grid, problem = self.grid, self.grid.problem
+        every = np.unique(np.concatenate(self.instants))
+        places = [np.searchsorted(every, each) for each in self.instants]
+        taus = np.array([grid.tau(k) for k in every.tolist()])
+        exact = np.array(Reference(known.model).values(taus.tolist()))
         truths = [
-            Truth(np.array(values), output.scale)
-            for values, output in zip(Reference(known.model).values(taus), known.outputs, strict=True)
+            Truth(values[at], output.scale) for values, at, output in zip(exact, places, known.outputs, strict=True)
         ]
 
         def solve(finer: int) -> list[Solution]:
-            values, roundoff = grid.finer(finer).integrate(finer * instants, links)
-            outputs = problem.outputs(values, np.array(taus))
-            return [Solution(*each) for each in zip(outputs, np.abs(problem.weights) @ roundoff, strict=True)]
+            values, roundoff = grid.finer(finer).integrate(finer * every, links)
+            rounding = np.abs(problem.weights) @ roundoff
+            outputs = zip(problem.outputs(values, taus), places, rounding, strict=True)
+            return [Solution(values[at], rounded) for values, at, rounded in outputs]
 
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
@@ -229,17 +229,21 @@ class Start:
         late, offset = 0.0, 0.0
         if rule == "late":
             late, offset = grid.tau(1), grid.front_offset([event.double for event in events(known.model)])
-        method = Integration(
-            name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late, offset
-        )
-        return method.outcomes(known.model.name, known.names, truths, {"to": f"{taus[-1]:.4g}"})
+        instants = [taus[at].tolist() for at in places]
+        method = Integration(name, grid.cells, solve, is_affordable, rule, instants, True, late, offset)
+        found = method.outcomes(known.model.name, known.names, truths, {})
+        refused = refused_outcomes(known, "to", _between_fronts(grid))
+        return [
+            replace(outcome, cells={"to": f"{each[-1]:.4g}", **outcome.cells}) if each else refusal
+            for outcome, each, refusal in zip(found, instants, refused, strict=True)
+        ]
 
 
 @lru_cache(maxsize=2)
 def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
     """The coarsest grid on which there is something to read from so many steps around, or why there is none."""
     model = known.integration_model
-    first, struck = _grid(model), list[tuple[Change, float]]()
+    first, struck = _known_grid(known), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     while first.tau(1) > _STOPPED * first.problem.soonest:
         if first.finer(8).cost(until) > MOST_MOVED:
@@ -249,7 +253,7 @@ def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
         if (found := first.resolve_changes(until, MOST_MOVED)) is None:
             return _NO_GRID
         first, struck = found
-    # after what happens at corners, too: that is known better on finer grids, and where its fronts are
+    # in every stretch between what happens at corners, which is known better on finer grids, and where its fronts are
     while not first.tells(until, struck, reach) and first.finer(8).cost(until) <= MOST_MOVED:
         found = first.finer(2).resolve_changes(until, MOST_MOVED) if struck else None
         first, struck = found or (first.finer(2), struck)
@@ -258,10 +262,26 @@ def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
         finest = finest.finer(2)
     if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
         return f"springs swing {swing:.2g} radians in the shortest step that can be taken"
-    instants = sample_evenly(first.instants(until, struck, reach), _MOST_INSTANTS)
-    if not len(instants):
-        return f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
-    return Start(first, until, struck, instants)
+    parts, instants = first.stretches(until, struck), first.instants(until, struck, reach)
+    if not any(map(len, instants)):
+        return _between_fronts(first)
+    return Start(first, until, struck, [_some(each, first, parts) for each in instants])
+
+
+def _some(instants: Instants, grid: MidpointGrid, parts: Sequence[Stretch]) -> Instants:
+    """As many as are looked at, some in each stretch."""
+    inside = instants[middles(parts, np.array([grid.tau(k) for k in instants.tolist()]))]
+    return np.union1d(sample_evenly(instants, _MOST_INSTANTS), inside)
+
+
+def _between_fronts(grid: MidpointGrid) -> str:
+    return f"to step between the fronts would take too long (at {grid.tau(1):.1g} a step)"
+
+
+@lru_cache(maxsize=2)
+def _known_grid(known: ReferenceOutputs) -> MidpointGrid:
+    """The coarsest one, which finer ones share with what they find."""
+    return _grid(known.integration_model)
 
 
 def _grid(model: Model) -> MidpointGrid:
@@ -308,8 +328,8 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
 
 def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     """When laws change at corners, against collocation between fronts and the midpoint rule."""
-    model, judged = known.model, known.integration_model
-    if not judged.network.corners:
+    model = known.model
+    if not known.integration_model.network.corners:
         return []
     solved = _cached_solutions(known)
     seen: dict[str, CornerHistory | None] = {}
@@ -317,7 +337,7 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
         seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.corner_changes, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
     sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
-    stepped = _grid(judged).resolve_changes(known.until, MOST_MOVED, sharp)
+    stepped = _known_grid(known).resolve_changes(known.until, MOST_MOVED, sharp)
     seen["midpoint"] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
     notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
     outcomes = [Outcome("corners", {}, True, note) for note in notes]
@@ -328,76 +348,3 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
             happened = [event for event in claimed if event.link == link]
             outcomes += compare_events(model.network.links[link].place, happened, here, known.until)
     return outcomes
-
-
-@dataclass(frozen=True)
-class CornerHistory:
-    """What a method found at contacts, and what it does not see as it does not last as long."""
-
-    changes: KnownChanges
-    shortest: float
-
-    def select(self, corner: int) -> CornerHistory:
-        """At one of them."""
-        return CornerHistory([each for each in self.changes if each[0].corner == corner], self.shortest)
-
-    def fit(self, claimed: Sequence[ContactEvent], until: float) -> CornerHistory:
-        """Without what may come after the end, where that is not claimed."""
-        for kept in (self.changes, [each for each in self.changes if each[0].tau + each[1] < until]):
-            found = replace(self, changes=kept)
-            if found._fits(claimed, found.visible(claimed)):
-                return found
-        return self
-
-    def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
-        """The numbers of events that it can have seen: without those at the start or that hardly last, if it must."""
-        kept = list(range(len(claimed)))
-        while len(kept) > len(self.changes) and claimed[kept[0]].double < self.shortest:
-            del kept[0]
-        while len(kept) > max(len(self.changes), 1):
-            lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
-            if min(lasting) >= self.shortest:
-                break
-            at = lasting.index(min(lasting))
-            turned, neither = [*kept[:at], *kept[at + 1 :]], [*kept[:at], *kept[at + 2 :]]
-            # what goes back, or comes to rest, after a moment is one event
-            kept = turned if self._fits(claimed, turned) and not self._fits(claimed, neither) else neither
-        return kept
-
-    def _fits(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> bool:
-        """Whether what it has seen is the first of these."""
-        seen = [change.kind for change, _ in self.changes]
-        return [claimed[k].kind for k in kept[: len(seen)]] == seen
-
-
-def compare_events(
-    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, CornerHistory | None], until: float
-) -> Iterator[Outcome]:
-    """A row for each event of a contact, and for each that a method has besides."""
-    rows: list[dict[str, str]] = [{"tau": f"{event.double:.12g}"} for event in claimed]
-    passed = [True for _ in claimed]
-    more = []
-    for name, method in methods.items():
-        if method is None:
-            rows = [row | {name: "refused"} for row in rows]
-            continue
-        method = method.fit(claimed, until)
-        visible = method.visible(claimed)
-        for k, event in enumerate(claimed):
-            if k not in visible:
-                rows[k] |= {name: "too short"}
-            elif (at := visible.index(k)) < len(method.changes):
-                change, slack = method.changes[at]
-                error = abs(change.tau - event.double)
-                rows[k] |= {name: format_error(error), f"{name} allowed": format_error(slack)}
-                passed[k] &= change.kind == event.kind and error <= slack
-            else:
-                rows[k] |= {name: "none"}
-                passed[k] &= event.double > until - _CLOSE
-        for change, slack in method.changes[len(visible) :]:
-            if change.tau + slack < until:
-                cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": format_error(slack)}
-                more.append(Outcome(f"{place} {change.kind}", cells, passed=False))
-    for event, row, right in zip(claimed, rows, passed, strict=True):
-        yield Outcome(f"{place} {event.kind}", row, right)
-    yield from more

@@ -8,7 +8,7 @@ as its square, and as the step where a law changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, inf, lcm
 from typing import TypeVar
@@ -22,6 +22,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction
 from wavesym.verification.link_pulls import LinkPulls
 from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_all
+from wavesym.verification.stretches import Stretch, stretches, unseen_stretches
 
 Instants = NDArray[np.int_]
 L = TypeVar("L", bound=Links)
@@ -42,8 +43,8 @@ _FINEST_ALIGNED = 128
 # steps before and after an instant that what is read there rests on
 _REACH = 1
 
-# of the instants away from fronts, so many are enough to begin with, and so many in the last quarter of the time
-_FEWEST, _FEWEST_LATE = 20, 5
+# of the instants away from fronts, so many are enough to begin with
+_FEWEST = 20
 
 # points and instants closer than this are the same, in doubles
 _SAME = 1e-6
@@ -58,6 +59,10 @@ class MidpointGrid:
 
     problem: CornerProblem
     step: Fraction
+    _happened: dict[tuple[Fraction, float], tuple[BranchChange, ...]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
+    """What happens at corners, by the step and until when: finer grids know what coarser ones found."""
 
     @classmethod
     def coarsest(cls, problem: CornerProblem, until: Fraction) -> MidpointGrid:
@@ -104,49 +109,70 @@ class MidpointGrid:
     @property
     def _cuts(self) -> set[Fraction]:
         """When fronts set out from points: at multiples of the delays' common measure after these."""
-        measure = self.problem.measure or 2 * Fraction(self.problem.until)
-        return {event.time % measure for event in self.problem.events} | {Fraction(0)}
+        return {event.time % self._period for event in self.problem.events} | {Fraction(0)}
 
-    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = (), reach: int = _REACH) -> Instants:
-        """Those up to `until` at which what every output is read from, `reach` steps around it, has no front inside.
+    @property
+    def _period(self) -> Fraction:
+        """The delays' common measure, after which fronts are where they were; without delays none comes back."""
+        return self.problem.measure or 2 * Fraction(self.problem.until)
+
+    def instants(
+        self, until: float, struck: Sequence[tuple[Change, float]] = (), reach: int = _REACH
+    ) -> list[Instants]:
+        """By output those up to `until` at which what it is read from, `reach` steps around it, has no front inside.
 
         Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
         what happened at corners: `struck` has when, and how well that is known.
         """
-        measure, step = self.problem.measure or 2 * Fraction(until), float(self.step)
-        instants = np.arange(1, int(until / step))
-        free = np.ones(len(instants), dtype=bool)
-        window = float(measure / self.step)
-        for reading in self.problem.readings:
-            offset = _offset(self.problem, reading)
-            for way in (offset, -offset):
-                for cut in self._cuts:
-                    passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
-                    free &= np.abs(passed) > reach - _SAME
-                for change, slack in struck:
-                    passed = instants - (change.tau - slack + way) / step
-                    after = passed % window
-                    free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
-        return instants[free]
+        problem, instants = self.problem, np.arange(1, int(until / float(self.step)))
+        offsets = [_offset(problem, reading) for reading in problem.readings]
+        free = {offset: self._is_free(instants, offset, struck, reach) for offset in {*offsets}}
+        everywhere = np.ones(len(instants), dtype=bool)
+        return [
+            instants[np.all([everywhere, *(free[offsets[k]] for k in np.flatnonzero(weights))], axis=0)]
+            for weights in problem.weights
+        ]
+
+    def _is_free(
+        self, instants: Instants, offset: Fraction, struck: Sequence[tuple[Change, float]], reach: int
+    ) -> NDArray[np.bool_]:
+        """At which instants there is no front so long a way from points."""
+        step = float(self.step)
+        free, window = np.ones(len(instants), dtype=bool), float(self._period / self.step)
+        for way in {offset, -offset}:
+            for cut in self._cuts:
+                passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
+                free &= np.abs(passed) > reach - _SAME
+            for change, slack in struck:
+                passed = instants - (change.tau - slack + way) / step
+                after = passed % window
+                free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
+        return free
 
     def tells(self, until: float, struck: Sequence[tuple[Change, float]], reach: int) -> bool:
-        """Whether there are `instants` enough, and some of them late."""
-        instants = self.instants(until, struck, reach)
-        late = int(np.count_nonzero(instants * float(self.step) > 3 / 4 * until))
-        return len(instants) >= _FEWEST and late >= _FEWEST_LATE
+        """Whether there are `instants` enough of each output, and some in every stretch between what happens."""
+        parts, step = self.stretches(until, struck), float(self.step)
+        return all(
+            len(each) >= _FEWEST and not unseen_stretches(parts, step * each.astype(np.float64))
+            for each in self.instants(until, struck, reach)
+        )
+
+    def stretches(self, until: float, struck: Sequence[tuple[Change, float]]) -> list[Stretch]:
+        """Those between loads and what happened at corners."""
+        loads = [float(event.time) for event in self.problem.events]
+        return stretches(until, [*loads, *(change.tau for change, _ in struck)])
 
     def resolve_changes(
         self, until: float, most: float, sharp: float = inf
     ) -> tuple[MidpointGrid, KnownChanges] | None:
         """The coarsest grid which, halved twice, has the same happen at corners, and that; None if it costs more.
 
-        It is known when within `sharp` parts of all of the time, if that does not cost more.
+        What lasts less than some steps of the coarsest counts on none. It is known when within `sharp` parts of all of
+        the time, if that does not cost more.
         """
-        grid, best, found = self, None, list[tuple[Change, ...]]()
+        grid, best = self, None
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
-            kept = found[1:]
-            found = kept + [grid.finer(k).changes(until) for k in (1, 2, 4)[len(kept) :]]
-            known = match_all(found)
+            known = match_all([grid.finer(k).changes(until, LATE * k) for k in (1, 2, 4)])
             if known is not None:
                 late = LATE * float(grid.step) / 4
                 best = grid, [(change, slack + late) for change, slack in known]
@@ -155,13 +181,15 @@ class MidpointGrid:
             grid = grid.finer(2)
         return best
 
-    def changes(self, until: float) -> tuple[Change, ...]:
+    def changes(self, until: float, shortest: int = LATE) -> tuple[Change, ...]:
         """What happens at corners by tau = `until` and stays so for some steps: the rest is what fronts do."""
-        _, links = self._solve(int(until / float(self.step)) + 2, LinkPulls)
+        if (self.step, until) not in self._happened:
+            _, links = self._solve(int(until / float(self.step)) + 2, LinkPulls)
+            self._happened[self.step, until] = tuple(links.changes)
         kept: dict[int, list[BranchChange]] = {}
-        for change in links.changes:
+        for change in self._happened[self.step, until]:
             here = kept.setdefault(change.corner, [])
-            if here and change.step - here[-1].step < LATE:
+            if here and change.step - here[-1].step < shortest:
                 last = here.pop()
                 change = change._replace(before=last.before, step=last.step)
             if change.before != change.after:

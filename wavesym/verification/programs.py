@@ -225,12 +225,13 @@ def _instants(known: ReferenceOutputs, integrals: Integrals, program: Program) -
     """Where values are compared, these as numbers of the program's type, and how far they are from that at most.
 
     A front may pass between an instant and the number of single precision that is nearest to it: such instants are
-    compared only where integrations are clear of fronts.
+    compared only where integrations are clear of fronts, and with these alone, as other outputs may not be.
     """
     real = np.float32 if program.real.bytes == 4 else np.float64
     there = [each for each in integrals if each]
     exact = np.array([*known.taus, *(tau for each in there if not each.clear for tau in each.taus)])
     clear = np.array([tau for each in there if each.clear for tau in each.taus])
+    clear = clear[(clear.astype(real) == clear) | ~np.isin(clear, exact)]
     taus = np.unique(np.concatenate([exact[exact.astype(real) == exact], clear]))
     given = np.minimum(taus.astype(real), real(program.tau_max)).astype(np.float64)
     return taus, given, float(np.max(np.abs(given - taus), initial=0.0))

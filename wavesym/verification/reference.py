@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -81,7 +82,7 @@ class ReferenceOutputs:
 
 
 def known_outputs(model: Model, independent: Model | None = None) -> ReferenceOutputs:
-    """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after.
+    """A model's outputs at a few hundred spread taus, at every arrival, the doubles beside it, and between any two.
 
     Of a long horizon the beginning, as far as it can be known in moderate time. `independent`: see `Known`.
     """
@@ -123,6 +124,9 @@ def _taus(until: float, starts: Sequence[float]) -> Iterator[float]:
     yield from (0.0, until)
     yield from spread_taus(until)
     yield from even_taus(until).tolist()
+    for begin, end in pairwise([0.0, *starts, until]):
+        middle = float(np.float32((begin + end) / 2))
+        yield middle if begin < middle < end else (begin + end) / 2
     for first in starts:
         for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
             if 0 <= tau <= until:

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
+from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import Request
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene
@@ -14,8 +18,10 @@ from wavesym.verification.integrations import elements
 from wavesym.verification.outcome import REFUSED, IntegratedOutput, Outcome, Row, table
 from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import ReferenceOutputs, known_outputs, unknown_outputs
+from wavesym.verification.stretches import PARTS, stretches, unseen_stretches
 
 _LATE = 0.05  # parts of the horizon that an integration may leave out at its end
+_MOST_TOLD = 3  # stretches without values
 _LEGEND = "Errors are relative to the output's largest value."
 _PROGRAMS = (
     "Programs, each in the output in which it is worst: its error against exact values (ball arithmetic rounded\n"
@@ -45,19 +51,22 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
         own = independent_model(scene, model)
         truth = known_outputs(model, own) if model.damping is None else unknown_outputs(model, own)
         notes += truth.notes
-        found: dict[str, IntegratedOutput] = {}
+        found: dict[str, list[IntegratedOutput]] = {}
         for number, check in enumerate(CHECKS, 1):
             if (truth.outputs or check.run is elements) and not (
                 requests is not None and len(found) == len(model.probes)
             ):
                 outcomes = check.run(truth)
                 add_rows(number, model.name, "of", outcomes)
-                judges = ((each.subject, each.integral) for each in outcomes if each.integral)
-                found = {name: each for name, each in judges if _judges(each, truth)} | found
-        integrals = [found.get(probe.name) for probe in model.probes]
+                for each in outcomes:
+                    if each.integral and _judges(each.integral, truth):
+                        found.setdefault(each.subject, []).append(each.integral)
+        judges = [found.get(probe.name, []) for probe in model.probes]
+        integrals = [next(iter(each), None) for each in judges]
         compared = compare_programs(scene, truth, integrals, requests)
         add_rows(0, model.name, "program", compared)
         add_rows(0, model.name, "program", _unjudged_outputs(model, integrals, compared))
+        add_rows(0, model.name, "program", unseen_outputs(truth, judges))
     lines = [_LEGEND, _compiler(), *dict.fromkeys(notes), ""]
     for title, of_check in zip((_PROGRAMS, *(check.title for check in CHECKS)), rows, strict=True):
         if of_check:
@@ -82,6 +91,31 @@ def _unjudged_outputs(
             found.append(Outcome("none", {"of": probe.name, "error": "not seen"}, False, why))
     if all(REFUSED in outcome.cells.values() for outcome in compared):
         found.append(Outcome("none", {"of": "-", "error": "refused"}, False, f"{model.name}: no program is verified"))
+    return found
+
+
+def unseen_outputs(truth: ReferenceOutputs, judges: Sequence[Sequence[IntegratedOutput]]) -> list[Outcome]:
+    """A row without a verdict for each output that integrations judge, but not in all stretches between what happens.
+
+    Args:
+        truth: what is known of the scene.
+        judges: what integrations have of each output.
+    """
+    model, until = truth.model, truth.until
+    happened = [event.double for event in events(model)] if truth.outputs else []
+    parts = stretches(until, [*happened, *(nearest(load.time) for load in model.loads)])
+    found = []
+    for probe, integrals in zip(model.probes, judges, strict=True):
+        taus = np.unique([tau for each in integrals for tau in each.taus])
+        if integrals and (unseen := unseen_stretches(parts, taus)):
+            where = ", ".join(f"{begin:.4g} to {end:.4g}" for begin, end in unseen[:_MOST_TOLD])
+            more = f" and {len(unseen) - _MOST_TOLD} more" if len(unseen) > _MOST_TOLD else ""
+            note = (
+                f"{model.name}: {probe.name} is verified in part, as no integration has values of it in {len(unseen)} "
+                f"of {len(parts)} stretches between events, loads and tenths of the time: tau = {where}{more} "
+                f"(stretches up to {until / PARTS:.2g} are not looked into)"
+            )
+            found.append(Outcome("none", {"of": probe.name, "error": "in part"}, True, note, decided=False))
     return found
 
 
