@@ -168,6 +168,17 @@ def test_tables_beyond_the_limit_are_refused_before_a_fit(monkeypatch):
         made.fit_pieces(2, size)
 
 
+def test_tables_that_travel_times_make_large_say_what_gives_them_a_measure():
+    """Bars, and a thin layer of another material."""
+    thin = {"rod": "0.01571", "speed": "0.98733333371"}
+    system = {"type": "chain", "parts": [{"rod": 1, "velocity": 1}, thin, {"rod": "1.7300001"}, "free"]}
+    made = fits(wavesym.Scene(name="layer", system=system, output={"until": 4, "strain": ["1/2"]}))
+    with pytest.raises(
+        pieces._TooLarge, match=r'\(speed_adjustment = "0.5 %" under \[system\], a shorter horizon, few'
+    ):
+        made.fit_pieces(2, 8)
+
+
 def test_a_fit_stops_at_the_limit(monkeypatch):
     """What degrees make of the tables is seen output by output."""
     made = fits(drive([1], [1, 2], 7, strain=["1/3", "1/2"], velocity=["1/3", "1/2"]))

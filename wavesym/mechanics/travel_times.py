@@ -48,6 +48,16 @@ def step_of(delays: Sequence[fmpq], *, or_pieces: bool = True) -> fmpq:
     return step
 
 
+def what_adjusts(bars: Sequence[Bar]) -> str:
+    """What gives travel times a common measure; "" where they have one that is long enough, or there are no rods."""
+    try:
+        if bars:
+            step_of([bar.delay for bar in bars])
+    except MeasureError as error:
+        return f"{error.helps} under [system]"
+    return ""
+
+
 def adjust_speeds(bars: Sequence[Bar], most: fmpq) -> tuple[Bar, ...]:
     """The same rods with a common measure of travel times, their lengths and impedances kept.
 

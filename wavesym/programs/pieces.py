@@ -31,6 +31,7 @@ from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion
 from wavesym.exact.output_piece import shorten
 from wavesym.exact.tables.ball import Balls, Segment, is_zero
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.travel_times import what_adjusts
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, nearest, rational
@@ -86,7 +87,7 @@ def pieces(
         if shorter > found.per_unit and missed and fits.differ(shorter, found.per_unit):
             found = fits.fit_pieces(shorter)
     if found.bytes > MOST_BYTES:
-        raise _too_large(found.bytes, MOST_BYTES)
+        raise _too_large(found.bytes, MOST_BYTES, model)
     return found
 
 
@@ -94,9 +95,10 @@ class _TooLarge(CostError):
     """Tables larger than they may be."""
 
 
-def _too_large(size: int, most: int) -> _TooLarge:
+def _too_large(size: int, most: int, model: Model) -> _TooLarge:
+    helps = ", ".join(filter(None, (what_adjusts(model.network.bars), "a shorter horizon")))
     return _TooLarge(
-        f"output.until: pieces would take at least {size} bytes, the limit is {most} (a shorter horizon, "
+        f"output.until: pieces would take at least {size} bytes, the limit is {most} ({helps}, "
         "fewer outputs or load times help)"
     )
 
@@ -175,7 +177,7 @@ class _Fits:
     def fit_pieces(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
         if self._least(per_unit) * self._real.bytes > most:
-            raise _too_large(self._least(per_unit) * self._real.bytes, most)
+            raise _too_large(self._least(per_unit) * self._real.bytes, most, self._model)
 
         def attempt(bits: int) -> Pieces | None:
             self._bits = bits  # what did for one number of pieces is where the next one starts
@@ -240,7 +242,7 @@ class _Fits:
                 columns.append(powers)
                 size += self._real.bytes * sum(map(len, powers))
                 if size > most:
-                    raise _too_large(size, most)
+                    raise _too_large(size, most, self._model)
             grids.append(cuts.grid(members, columns))
         outputs = tuple(
             ProgramOutput(probe.name, *bounds[k], incidental=probe.incidental) for k, probe in enumerate(probes)

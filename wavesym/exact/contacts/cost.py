@@ -11,12 +11,12 @@ from math import log
 
 from flint import fmpq
 
-from wavesym.errors import CostError, MeasureError
+from wavesym.errors import CostError
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
-from wavesym.mechanics.travel_times import step_of
+from wavesym.mechanics.travel_times import what_adjusts
 from wavesym.numbers.doubles import nearest
 
 # stretches in all, which take half a minute and half a gigabyte, and those whose motion is a series: half a minute
@@ -123,15 +123,6 @@ class Cost:
             f"{nearest(reckoned):.1e} by tau = {nearest(self._until):g}, the limit is {most} ({helps} help)"
         )
 
-    @property
-    def _adjustment(self) -> str:
-        """What gives travel times a common measure, where they have none that is long."""
-        try:
-            step_of([bar.delay for bar in self._network.bars])
-        except MeasureError as error:
-            return f"{error.helps} under [system]"
-        return ""
-
     def _causes(self, events: int) -> tuple[str, str]:
         """What makes stretches, and what helps: where the joint with most stretches swings fast, less of that."""
         causes = f"fronts and {events} openings and closings of contacts"
@@ -140,7 +131,7 @@ class Cost:
         longest = min((self._network.bars[end.bar].delay for end, _ in joint.ends), default=self._last[number])
         if swing * longest <= MOST_SWING:
             helps = "a shorter horizon, lengths with a larger common measure, or springs in place of thin rods"
-            return causes, ", ".join(filter(None, (self._adjustment, helps)))
+            return causes, ", ".join(filter(None, (what_adjusts(self._network.bars), helps)))
         place = self._network.points[joint.points[0]].place
         return (
             f"what swings or decays{place and ' at '}{place} at a rate of {nearest(swing):.3g}, {causes}",
