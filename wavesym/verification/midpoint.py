@@ -59,7 +59,7 @@ class MidpointGrid:
 
     problem: CornerProblem
     step: Fraction
-    _happened: dict[tuple[Fraction, float], tuple[BranchChange, ...]] = field(
+    _seen_branches: dict[tuple[Fraction, float], tuple[BranchChange, ...]] = field(
         default_factory=dict, repr=False, compare=False
     )
     """What happens at corners, by the step and until when: finer grids know what coarser ones found."""
@@ -183,11 +183,11 @@ class MidpointGrid:
 
     def changes(self, until: float, shortest: int = LATE) -> tuple[Change, ...]:
         """What happens at corners by tau = `until` and stays so for some steps: the rest is what fronts do."""
-        if (self.step, until) not in self._happened:
+        if (self.step, until) not in self._seen_branches:
             _, links = self._solve(int(until / float(self.step)) + 2, LinkPulls)
-            self._happened[self.step, until] = tuple(links.changes)
+            self._seen_branches[self.step, until] = tuple(links.changes)
         kept: dict[int, list[BranchChange]] = {}
-        for change in self._happened[self.step, until]:
+        for change in self._seen_branches[self.step, until]:
             here = kept.setdefault(change.corner, [])
             if here and change.step - here[-1].step < shortest:
                 last = here.pop()

@@ -26,14 +26,14 @@ def stretches(until: float, times: Iterable[float]) -> list[Stretch]:
 
 def unseen_stretches(parts: Sequence[Stretch], taus: Array) -> list[Stretch]:
     """Those inside which none of ascending instants lies."""
-    return [(begin, end) for begin, end in parts if not len(_inside(begin, end, taus))]
+    return [(begin, end) for begin, end in parts if not len(_numbers_in(begin, end, taus))]
 
 
 def middles(parts: Sequence[Stretch], taus: Array) -> Array:
     """Of ascending instants the numbers of those in the middle of the ones in each stretch."""
-    found = [here[len(here) // 2] for begin, end in parts if len(here := _inside(begin, end, taus))]
+    found = [here[len(here) // 2] for begin, end in parts if len(here := _numbers_in(begin, end, taus))]
     return np.array(found, dtype=int)
 
 
-def _inside(begin: float, end: float, taus: Array) -> range:
+def _numbers_in(begin: float, end: float, taus: Array) -> range:
     return range(int(np.searchsorted(taus, begin, "right")), int(np.searchsorted(taus, end, "left")))
