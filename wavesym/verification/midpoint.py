@@ -46,6 +46,9 @@ _REACH = 1
 # of the instants away from fronts, so many are enough to begin with
 _FEWEST = 20
 
+# what lasts longer than all of the time over that is seen, if it does not cost more: grids may agree on nothing before
+_RESOLVED = 50
+
 # points and instants closer than this are the same, in doubles
 _SAME = 1e-6
 
@@ -167,8 +170,8 @@ class MidpointGrid:
     ) -> tuple[MidpointGrid, KnownChanges] | None:
         """The coarsest grid which, halved twice, has the same happen at corners, and that; None if it costs more.
 
-        What lasts less than some steps of the coarsest counts on none. It is known when within `sharp` parts of all of
-        the time, if that does not cost more.
+        What lasts less than some steps of the coarsest, which is a fiftieth of the time at most, counts on none. It is
+        known when within `sharp` parts of all of the time. Both unless that costs more.
         """
         grid, best = self, None
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
@@ -176,7 +179,8 @@ class MidpointGrid:
             if known is not None:
                 late = LATE * float(grid.step) / 4
                 best = grid, [(change, slack + late) for change, slack in known]
-                if all(slack <= sharp * until for _, slack in best[1]):
+                resolved = LATE * float(grid.step) <= until / _RESOLVED
+                if resolved and all(slack <= sharp * until for _, slack in best[1]):
                     return best
             grid = grid.finer(2)
         return best
