@@ -174,6 +174,18 @@ def test_a_case_that_kills_whatever_is_beside_it_is_the_only_one_that_fails(
     assert files(tmp_path / "out") == files(tmp_path / "alone")
 
 
+def test_a_case_that_kills_and_is_a_batch_is_the_only_one_that_fails(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(cutting, "_MOST_BATCHES", CASES)
+    client = swept(Client(dies=lambda places: (7,) in places))
+    found = status(tmp_path / "out")
+    assert (found.done, found.failed, found.left) == (CASES - 1, 1, 0)
+    assert client.sent.count((7, None)) == 1
+    assert client.sent[-1] == (7, [(7,)])
+    assert client.most[-1] == 1
+
+
 def test_a_case_that_dies_for_others_does_not_fail(swept: Callable[..., Client], tmp_path: Path) -> None:
     """As of a worker that is killed from outside: the third time it lives."""
     deaths = iter([True, True, True])

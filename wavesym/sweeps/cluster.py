@@ -171,12 +171,12 @@ class _Waiting:
 
     def give_up(self, task: Task, last: Task | None) -> bool:
         """Take again what workers died of; False for a case that was the `last` one alone."""
-        count = self._count(task)
+        if task == last:
+            return False
+        count, parts = self._count(task), self._in_parts(task, _PARTS)
         if count == 1:
-            if task != last:
-                self.alone.append(task)
-            return task != last
-        parts = self._in_parts(task, _PARTS)
+            self.alone.extend(parts)
+            return True
         self._parts.extend(parts)
         if count > self._largest:
             self._strikes += 1
