@@ -252,7 +252,7 @@ def test_it_allocates_nothing_and_exports_its_prefix(tmp_path: Path) -> None:
 BREAKS = {
     "a ring": ("const int turn = steps[number] + 1;", "const int turn = steps[number] + 2;"),
     "a body": ("return q[0] + (last_sum - rows[LOSS] * q[0]);", "return q[0] + last_sum;"),
-    "a block": ("x[k] += gained[k];", "x[k] += 2 * gained[k];"),
+    "a block": ("x[k] += velocities[count + k];", "x[k] += 2 * velocities[count + k];"),
     "a scatterer": (
         "add(on->sent[other], *factor++, on->arriving[port], SIZE);",
         "add(on->sent[other], -*factor++, on->arriving[port], SIZE);",

@@ -403,7 +403,7 @@ BREAKS = {
     "what arrives": ("slot_of(state, number, slots[number] - 1)", "slot_of(state, number, slots[number] - 2)"),
     "what arrives later": ("breakpoint, number, entries[number] - 1)", "breakpoint, number, 0)"),
     "a state": ("*x = step_body(on->table, given, *x, velocities);", "step_body(on->table, given, *x, velocities);"),
-    "a state inside": ("1, breakpoint == EDGE ? panel : panel - state->time);", "1, panel);"),
+    "a state inside": ("acting, breakpoint == EDGE ? panel : panel - state->time,", "acting, panel,"),
     "a state later": ("breakpoint < 0 ? panel : panel - state->place[breakpoint]);", "panel);"),
     "a force": ("power[0] += strength[force * LOADS + j] * load[j];", ""),
     "what is sent": (
