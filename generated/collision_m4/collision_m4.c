@@ -42,7 +42,7 @@ static real not_a_number(void)
 #define VECTOR 0
 #endif
 
-#if VECTOR
+#if VECTOR > 0
 typedef real lanes __attribute__((vector_size(VECTOR)));
 typedef real slice __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
 typedef __typeof__(*(const lanes *)0 < *(const lanes *)0) choice; /* of numbers: all their bits, or none */
@@ -53,7 +53,7 @@ typedef real slice;
 enum { LANES = sizeof(slice) / sizeof(real) };
 
 /* Of functions whose counts of vectors and outputs are known where they are called. */
-#if defined(__clang__) && defined(__AVX512F__) && VECTOR
+#if defined(__clang__) && defined(__AVX512F__) && VECTOR > 0
 #define WITHIN static inline __attribute__((always_inline, min_vector_width(512))) /* else it takes halves of vectors */
 #elif defined(__GNUC__) && !defined(__FRAMAC__)
 #define WITHIN static inline __attribute__((always_inline))
@@ -76,7 +76,7 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 
 /* On aarch64 what is loaded by a number that has been given this way is loaded where it stands. Out of loops compilers would
  * keep more vectors than there are registers, and the rest on the stack; x86-64 has such loads as operands for nothing. */
-#if VECTOR && defined(__aarch64__)
+#if VECTOR > 0 && defined(__aarch64__)
 #define LOADED_HERE(number) __asm__ volatile("" : "+r"(number))
 #else
 #define LOADED_HERE(number)
@@ -568,7 +568,7 @@ static const real exact = 9007199254740992.0;
  * or bend at the same times share a grid of pieces. */
 
 /* What is computed in vectors is apart, so that these stay in registers. */
-#if VECTOR
+#if VECTOR > 0
 #define APART static __attribute__((noinline))
 #else
 #define APART static
@@ -581,7 +581,7 @@ enum { IN_RUNS = VECTOR > 0 };
 #define LOOKS_AHEAD 0
 #else
 enum { IN_RUNS = 1 };
-#define LOOKS_AHEAD VECTOR
+#define LOOKS_AHEAD (VECTOR > 0)
 #endif
 
 static const real offset[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -668,7 +668,7 @@ static lanes everywhere(real x)
 WITHIN lanes instants_of(const instants *t, lanes k)
 {
     lanes step = k * t->dtau;
-#if VECTOR && defined(__SSE2__)
+#if VECTOR > 0 && defined(__SSE2__)
     __asm__("" : "+v"(step)); /* so it is contracted into nothing: `one` would cost a multiplication */
 #else
     step = step * t->one;

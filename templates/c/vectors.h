@@ -15,7 +15,7 @@
 #define VECTOR 0
 #endif
 
-#if VECTOR
+#if VECTOR > 0
 typedef real lanes __attribute__((vector_size(VECTOR)));
 typedef real slice __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
 typedef __typeof__(*(const lanes *)0 < *(const lanes *)0) choice; /* of numbers: all their bits, or none */
@@ -26,7 +26,7 @@ typedef real slice;
 enum { LANES = sizeof(slice) / sizeof(real) };
 
 /* Of functions whose counts of vectors and outputs are known where they are called. */
-#if defined(__clang__) && defined(__AVX512F__) && VECTOR
+#if defined(__clang__) && defined(__AVX512F__) && VECTOR > 0
 #define WITHIN static inline __attribute__((always_inline, min_vector_width(512))) /* else it takes halves of vectors */
 #elif defined(__GNUC__) && !defined(__FRAMAC__)
 #define WITHIN static inline __attribute__((always_inline))
@@ -49,7 +49,7 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 
 /* On aarch64 what is loaded by a number that has been given this way is loaded where it stands. Out of loops compilers would
  * keep more vectors than there are registers, and the rest on the stack; x86-64 has such loads as operands for nothing. */
-#if VECTOR && defined(__aarch64__)
+#if VECTOR > 0 && defined(__aarch64__)
 #define LOADED_HERE(number) __asm__ volatile("" : "+r"(number))
 #else
 #define LOADED_HERE(number)

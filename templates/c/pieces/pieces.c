@@ -5,7 +5,7 @@
  * or bend at the same times share a grid of pieces. */
 
 /* What is computed in vectors is apart, so that these stay in registers. */
-#if VECTOR
+#if VECTOR > 0
 #define APART static __attribute__((noinline))
 #else
 #define APART static
@@ -18,7 +18,7 @@ enum { IN_RUNS = VECTOR > 0 };
 #define LOOKS_AHEAD 0
 #else
 enum { IN_RUNS = 1 };
-#define LOOKS_AHEAD VECTOR
+#define LOOKS_AHEAD (VECTOR > 0)
 #endif
 
 static const real offset[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -105,7 +105,7 @@ static lanes everywhere(real x)
 WITHIN lanes instants_of(const instants *t, lanes k)
 {
     lanes step = k * t->dtau;
-#if VECTOR && defined(__SSE2__)
+#if VECTOR > 0 && defined(__SSE2__)
     __asm__("" : "+v"(step)); /* so it is contracted into nothing: `one` would cost a multiplication */
 #else
     step = step * t->one;

@@ -2,7 +2,7 @@
 #include "blocks.c"
 #include "../root.h"
 
-#if VECTOR
+#if VECTOR > 0
 #define LARGER(x, y) ((slice)((((x) > (y)) & (choice)(x)) | (~((x) > (y)) & (choice)(y))))
 #else
 #define LARGER(x, y) ((x) > (y) ? (x) : (y))

@@ -9,7 +9,7 @@
 #define WIDE VECTOR
 #endif
 
-#if VECTOR
+#if VECTOR > 0
 typedef real wide __attribute__((vector_size(WIDE), aligned(sizeof(real)), may_alias));
 static const wide none = {0};
 typedef __typeof__(none < none) mask;
@@ -41,7 +41,7 @@ static void add_magnitude_batch(wide *sum, const wide *x)
 /* Whether a test holds in some set. */
 static int in_some(const mask *test)
 {
-#if VECTOR
+#if VECTOR > 0
     typedef long long words __attribute__((vector_size(WIDE)));
     const words all = (words)*test;
     long long found = 0;

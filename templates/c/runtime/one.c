@@ -46,7 +46,7 @@ static real total_of(const pack *x)
     return sum[0];
 }
 
-#if VECTOR
+#if VECTOR > 0
 #define MAGNITUDE(x) ((pack)((choice)(x) & ~(choice)(-nothing)))
 #else
 #define MAGNITUDE(x) magnitude(x)

@@ -15,7 +15,7 @@ enum { ROW = NAME_ROW, MOST_STATES = NAME_WIDEST };
 enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1 };
 
 /* A lane of a vector. */
-#if VECTOR
+#if VECTOR > 0
 #define AT(x, lane) ((x)[lane])
 #else
 #define AT(x, lane) (x)
