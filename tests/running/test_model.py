@@ -183,3 +183,27 @@ def test_velocities_of_a_scene_that_does_not_move_may_come_later():
     assert np.max(np.abs(still.run(tau, velocity=[1, -0.5])[0] - true)) < 1e-9 * np.max(np.abs(true))
     slopes = still.gradients(tau, velocity=[1, 1]).by["velocity"][0]
     assert np.max(np.abs(slopes[0] - slopes[1] / 2 - true)) < 1e-9 * np.max(np.abs(true))
+
+
+@pytest.mark.parametrize("ramps", [(0, 0), ("1/2", 0)])
+def test_ramps_that_the_scene_has_as_0_are_given_at_run_time(ramps):
+    """A drive whose ramps are all 0 took those of a set for none, under a bound of 1e-11."""
+    load = {"body": 1, "times": [0, 2], "steps": [1, 0], "ramps": list(ramps)}
+    drive = {"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 2]}
+    scene = wavesym.Scene(name="ramped", system=drive, load=[load], output={"until": 5, "strain": ["1/2"]})
+    given = {"load[0].steps": [1, "-1/2"], "load[0].ramps": ["3/4", 1]}
+    tau = np.linspace(0, 5, 31)
+    found = wavesym.model(scene, ["load"]).values(load=[1, -0.5, 0.75, 1], tau=tau)
+    np.testing.assert_allclose(found.squeeze(), wavesym.evaluator(scene.with_(given))(tau)[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("load", [{"a": [1, 0]}, {"a": [1, 0], "b": [0, 0]}, {"a": [0, 0]}, {"a": [0, 1], "b": [0, 0]}])
+def test_a_scene_with_numbers_of_loads_that_are_0_is_served(load):
+    """Degrees were enough for it with 1 in the place of each."""
+    building = {"type": "building", "m": 1, "kappa": [1, 1], "base": "force"}
+    scene = wavesym.Scene(
+        name="resting", system=building, load=[{"times": [0, 2], **load}], output={"until": 5, "strain": ["1/2"]}
+    )
+    checked = wavesym.model(scene, ["load"]).check()
+    assert checked.status.tolist() == [0]
+    assert checked.estimate[0] < 1e-10

@@ -145,7 +145,7 @@ class Drive(Preset):
 
     def named_chain(self, loads: Sequence[Load]) -> Chain:
         """The chain as the paper has it, with ramps where a load needs them."""
-        ramped = any(not isinstance(load, Moment) or any(load.ramps) for load in loads)
+        ramped = any(not isinstance(load, Moment) or load.ramps for load in loads)
         return replace(self.chain, system=DRIVE_RAMPS) if ramped else self.chain
 
     @property

@@ -74,8 +74,9 @@ def degrees(made: RuntimePlan, share: float, tolerance: fmpq, kappa_max: fmpq | 
         return DegreeRange(first, max(ceil(1.5 * _front(own, rate)) + 24, first))
     started = any(field.name == "velocity" for field in made.free.fields)
     degree = LEAST
-    for usual in _initial_state(own, anew=started):
-        degree = _enough(usual, degree, share)
+    for usual in made.usual:
+        for each in _initial_state(usual, anew=started):
+            degree = _enough(each, degree, share)
     first = max(LEAST, 4 * degree // 5)
     for quick in () if kappa_max is None else _light(made, kappa_max):
         for light in _initial_state(quick, anew=started):

@@ -86,7 +86,8 @@ class SharedReading(NamedTuple):
 
 @dataclass(frozen=True)
 class RuntimePlan:
-    """`plan` has joints that are functions, and no loads that matter; `own` is that of the scene's numbers.
+    """`plan` has joints that are functions, and no loads that matter; `usual` are those of the scene's numbers: where
+    loads that are 0 count once, and, where there are any, as they are.
 
     `output_terms` are the waves in outputs, each with the number of its output; `is_zero` says of each output whether
     it is 0 whatever the parameters are.
@@ -94,12 +95,17 @@ class RuntimePlan:
 
     model: Model
     plan: MarchPlan
-    own: MarchPlan
+    usual: tuple[MarchPlan, ...]
     free: FreeNetwork
     events: tuple[AmplitudeEvent, ...]
     output_terms: tuple[tuple[int, Any], ...]
     strands: tuple[Strand, ...]
     is_zero: tuple[bool, ...]
+
+    @property
+    def own(self) -> MarchPlan:
+        """That of the scene's numbers, with all loads."""
+        return self.usual[0]
 
     @property
     def sections(self) -> tuple[fmpq, ...]:
@@ -123,13 +129,18 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     changes = {(change.time, change.source) for load in acting for change in load}
     units = tuple(AppliedLoad(source, time, fmpq(1)) for time, source in sorted(changes))
     plan = free_march(model, free, units, real, HELPS)
-    # in the scene each counts as it says, or, where that is 0, once
-    known = (
-        replace(change, weight=change.weight * (load.weight or 1))
-        for load, changes in zip(loads, acting, strict=True)
-        for change in changes
-    )
-    own = march_plan(replace(model, loads=merge_loads(known)), real, helps=HELPS, or_pieces=False)
+
+    def known(instead_of_0: int) -> MarchPlan:
+        """In the scene each counts as it says."""
+        weighed = (
+            replace(change, weight=change.weight * (load.weight or instead_of_0))
+            for load, changes in zip(loads, acting, strict=True)
+            for change in changes
+        )
+        return march_plan(replace(model, loads=merge_loads(weighed)), real, helps=HELPS, or_pieces=False)
+
+    own = known(1)
+    usual = (own, known(0)) if any(load.weight == 0 for load in loads) else (own,)
     is_zero = zero_outputs(free.some, loads, real)
     output_terms = tuple(
         (number, replace(wave, gain=fmpq(0)) if is_zero[number] else wave)
@@ -139,7 +150,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     chosen = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
     events = ordered_events(_events(plan, free, acting, chosen or [fmpq(1)] * len(loads)))
     strands = tuple(_strands(plan, output_terms))
-    return RuntimePlan(model, plan, own, free, events, output_terms, strands, tuple(is_zero))
+    return RuntimePlan(model, plan, usual, free, events, output_terms, strands, tuple(is_zero))
 
 
 def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], real: Real, helps: str) -> MarchPlan:
