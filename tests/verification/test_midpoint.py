@@ -161,3 +161,22 @@ def test_what_would_take_too_long_is_said(monkeypatch):
     refused = integrations.midpoints(replace(truth))
     assert all(outcome.passed and "too long" in outcome.note for outcome in refused)
     assert {outcome.cells["to"] for outcome in refused} == {"refused"}
+
+
+def test_delays_of_no_common_measure_are_many_steps():
+    """The step is a measure of 1e-17, and of each delay there were more steps than an integer takes."""
+    steel, aluminium = {"A": "2 cm^2", "E": "200 GPa", "rho": "7800 kg/m^3"}, {"E": "70 GPa", "rho": "2700 kg/m^3"}
+    system = {
+        "type": "chain",
+        "parts": [
+            {"rod": "1 m", **steel, "velocity": "10 m/s"},
+            {"contact": "1 mm"},
+            {"joint": True, "name": "in"},
+            {"rod": "2 m", **steel},
+            {"rod": "1 m", "A": "1 cm^2", **aluminium},
+            {"mass": "0.1 kg", "name": "out", "velocity": "0 m/s", "friction": "500 N"},
+        ],
+    }
+    output = {"until": "1.5 ms", "tolerance": "1e-6", "velocity": ["out"]}
+    model = lower(Scene(name="bars", system=system, units={"time": "ms"}, output=output))
+    assert all("to" in outcome.cells for outcome in integrations.midpoints(known_outputs(model)))

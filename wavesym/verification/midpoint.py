@@ -213,7 +213,8 @@ class MidpointGrid:
         return values.reshape(-1, len(instants)), roundoff
 
     def _solve(self, steps: int, method: Callable[[CornerProblem, Array, float], L]) -> tuple[WaveMotion, L]:
-        h, lags = float(self.step), np.array([int(delay / self.step) for delay in self.problem.delays], dtype=int)
+        h = float(self.step)
+        lags = np.array([min(int(delay / self.step), steps) for delay in self.problem.delays], dtype=int)
         rule = MidpointRule(self.problem, h, steps)
         links = method(self.problem, rule.inverse, h)
         move = rule.nonlinear(links) if len(self.problem.contacts + self.problem.laws) else rule.linear()
