@@ -22,8 +22,9 @@ from distributed import KilledWorker
 from tests.sweeps.test_cluster import files
 from tests.sweeps.test_store import fake
 from wavesym.sweeps import batches as cutting
-from wavesym.sweeps import cluster, pace, work
+from wavesym.sweeps import cluster, marks, pace, store, work
 from wavesym.sweeps.batches import Batches, Task
+from wavesym.sweeps.results import results
 from wavesym.sweeps.running import Computing, run
 from wavesym.sweeps.status import status
 
@@ -221,3 +222,74 @@ def test_a_cluster_that_grows_is_fed_as_it_is_now(
     assert max(client.most) == 12  # three for each thread
     assert np.all(np.diff([batch for batch, _ in client.sent]) > 0)
     assert status(tmp_path / "out").done == CASES
+
+
+def interrupted(swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, chunks: int) -> None:
+    """The sweep, in parts of three, killed when so many chunks of its fifth part are in their places."""
+
+    class Killed(BaseException):
+        pass
+
+    right, parts = store.Store.write, []
+
+    def write(self: Any, batch: int, made: Any) -> None:
+        parts.append(batch)
+        if len(parts) < 5:
+            return right(self, batch, made)
+        right(self, batch, dict(list(made.items())[:chunks]))
+        raise Killed
+
+    with monkeypatch.context() as patch:
+        patch.setattr(store.Store, "write", write)
+        with pytest.raises(Killed):
+            swept(Client(dies=lambda places: len(places) > 3, threads=lambda sent: 1))
+
+
+@pytest.mark.parametrize("chunks", [0, 1, 3, 99])
+def test_parts_stay_done_when_the_next_one_is_cut_off(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, chunks: int
+) -> None:
+    """Its chunks are put in the places of those of the parts before, one after the other."""
+    interrupted(swept, monkeypatch, chunks)
+    assert results(tmp_path / "out").status.done == status(tmp_path / "out").done == 12
+    interrupted(swept, monkeypatch, 2)  # and again, from there: four more parts, of two
+    assert results(tmp_path / "out").status.done == 20
+    client = swept(Client(dies=lambda places: False))
+    assert client.sent == [(0, [(case,) for case in range(20, CASES)])]
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_a_sweep_that_goes_on_is_not_damaged(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Whoever reads finds chunks of now beside a mark that was read before."""
+    interrupted(swept, monkeypatch, 1)
+    right, looks = marks.Marks.get, []
+
+    def get(self: marks.Marks, *which: Any) -> Any:
+        found = right(self, *which)
+        if not looks:  # as it was read before the last part
+            looks.append(found)
+            swept(Client(dies=lambda places: False))
+        return found
+
+    monkeypatch.setattr(marks.Marks, "get", get)
+    assert results(tmp_path / "out").status.done == CASES
+    assert looks[0].left
+
+
+def test_workers_that_do_not_start_are_said_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where one is killed while it does."""
+
+    def nobody(**_: object) -> None:
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", nobody)
+    with pytest.raises(cluster.ClusterError, match=r"do not start \(Nanny failed to start"), cluster.connect(2, None):
+        pass
+
+
+def test_a_draft_that_has_come_to_its_place_is_no_damage(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "kept").touch()
+    monkeypatch.setattr(store.os, "walk", lambda path: [(str(path), [], ["kept", ".0.part"])])
+    assert store.folder_content(tmp_path) == {"kept"}

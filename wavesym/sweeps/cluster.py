@@ -57,7 +57,12 @@ def connect(workers: int | None, address: str | None) -> Iterator[Any]:
             stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": _DEATHS, **patience}))
             stack.enter_context(_without_script())
             alone = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
-            address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
+            try:
+                address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
+            except (OSError, RuntimeError, TimeoutError) as error:
+                raise ClusterError(
+                    f"the workers of this machine do not start ({error}); the sweep goes on here"
+                ) from None
         try:
             client = Client(address, timeout=_WAIT, set_as_default=False)
         except (OSError, ValueError) as error:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from pydantic import Field
+
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.sealed_files import DamagedError, SealedFile, Sha256, StrictTable
 
@@ -21,7 +23,10 @@ class FailedCase(StrictTable):
 
 class BatchMark(SealedFile):
     """What has come of a batch of so many `cases`: hashes of its `chunks` by array (None: no file, all NaN), how cases
-    were computed, those that `failed`, and the numbers of those that are `left`, where it is done in part."""
+    were computed, those that `failed`, and the numbers of those that are `left`, where it is done in part.
+
+    While chunks are replaced, as more cases come, each is what it was or what is `coming`: both hold what is done.
+    """
 
     batch: int
     cases: int
@@ -29,6 +34,11 @@ class BatchMark(SealedFile):
     how: dict[str, int]
     failed: list[FailedCase]
     left: list[int]
+    coming: dict[str, Sha256 | None] = Field(default_factory=dict)
+
+    def allowed(self, name: str) -> set[str | None]:
+        """The hashes that the chunk of an array may have."""
+        return {each[name] for each in (self.chunks, self.coming) if name in each}
 
     def is_of(self, batches: Batches, batch: int) -> bool:
         """Whether it speaks of a batch: of as many cases, each at most once, and of no others."""

@@ -22,7 +22,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.results.statistics import LINK_ARRAYS
 from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.manifest import Manifest
-from wavesym.sweeps.marks import BatchMark
+from wavesym.sweeps.marks import BatchMark, Marks
 from wavesym.sweeps.sealed_files import DamagedError, StrictTable
 from wavesym.sweeps.status import SweepStatus, damage, marks_of, status_of
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, folder_content
@@ -177,7 +177,7 @@ def results(folder: Path) -> SweepResults:
     damaged = [
         each for each, known in manifest.files.items() if each not in there or file_hash(store.path / each) != known
     ]
-    again = {batch: wrong for batch, mark in marks.items() if (wrong := store.damaged_chunks(batch, mark.chunks))}
+    again = {batch: wrong for batch in list(marks) if (wrong := _damaged_chunks(store, manifest, marks, batch))}
     if damaged or again:
         files = [f"{NAME}/{each}" for each in (*damaged, *chain.from_iterable(again.values()))]
         raise damage(folder, files, sum(map(store.batches.count, again)), manifest.cases)
@@ -186,6 +186,19 @@ def results(folder: Path) -> SweepResults:
     except (ValidationError, ValueError, LookupError, TypeError, RecursionError) as error:
         # nothing of this comes from damage: it is none of a sweep, though its hashes are right
         raise DamagedError(f"{store.path}: coordinates that are none ({type(error).__name__})") from None
+
+
+def _damaged_chunks(store: Store, manifest: Manifest, marks: dict[int, BatchMark], batch: int) -> list[str]:
+    """The chunks of a batch that are not what its mark says, which a sweep that goes on may put anew meanwhile."""
+    while wrong := store.damaged_chunks(batch, marks[batch]):
+        now = Marks(store.folder).get(store.batches.mark(manifest.sha256, batch), store.batches, batch)
+        if now == marks[batch]:
+            return wrong
+        if now is None:
+            del marks[batch]
+            return []
+        marks[batch] = now
+    return []
 
 
 def _dimensions(store: Store, manifest: Manifest) -> tuple[StoredAxis, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
@@ -84,7 +85,9 @@ def _remaining_batches(planned: SweepPlan, store: Store, marks: Marks, retry_fai
             raise
         except DamagedError:
             mark = None  # as if there were none
-        if mark and not store.damaged_chunks(batch, mark.chunks):
+        if mark and not store.damaged_chunks(batch, mark):
+            if mark.coming:
+                marks.put(name, mark.model_copy(update={"chunks": store.hashes(batch), "coming": {}}))
             if again := {*mark.left, *(failed.case for failed in mark.failed if retry_failed)}:
                 every = store.batches.places(batch)
                 left.append((batch, [place for place in every if planned.number(place) in again]))
@@ -95,15 +98,20 @@ def _remaining_batches(planned: SweepPlan, store: Store, marks: Marks, retry_fai
 
 
 def keep(planned: SweepPlan, store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
-    """First the chunks, then the mark. What else is known of the batch stays."""
+    """First the chunks, then the mark. What else is known of the batch stays, and holds while chunks are replaced."""
     parts, name = store.batches, store.batches.mark(planned.sha256, batch)
-    left: set[Place] = set()
+    before, left = marks.get(name, parts, batch), set[Place]()
     if len(values.places) < parts.count(batch):
-        values, left = _join_marks(planned, store, marks.get(name, parts, batch), batch, values)
+        values, left = _join_marks(planned, store, before, batch, values)
+    chunks = store.chunks(batch, values.arrays)
+    hashes = {each: None if data is None else hashlib.sha256(data).hexdigest() for each, data in chunks.items()}
+    if before:
+        marks.put(name, before.model_copy(update={"coming": hashes}))
+    store.write(batch, chunks)
     mark = BatchMark(
         batch=batch,
         cases=parts.count(batch),
-        chunks=store.write(batch, values.arrays),
+        chunks=hashes,
         how=dict(sorted(values.how.items())),
         failed=[
             FailedCase(case=planned.number(place), values=planned.labels_at(place), reason=reason)

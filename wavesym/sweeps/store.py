@@ -26,6 +26,7 @@ from wavesym.errors import WavesymError, install_command
 from wavesym.numbers.arrays import Array
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
+from wavesym.sweeps.marks import BatchMark
 from wavesym.sweeps.plan import CASE, LINK, OUTPUT, SAMPLE, SweepPlan
 from wavesym.sweeps.sealed_files import DamagedError, refuse_other
 from wavesym.sweeps.values import kept_arrays, sizes
@@ -64,31 +65,38 @@ class Store:
     def _shape(self, name: str) -> tuple[int, ...]:
         return (*self.batches.chunk, *self.arrays[name])
 
-    def write(self, batch: int, arrays: Mapping[str, Array]) -> dict[str, str | None]:
-        """Put the arrays of a batch, over its cases, into its chunks; the hash of each of them."""
-        made: dict[str, str | None] = {}
+    def chunks(self, batch: int, arrays: Mapping[str, Array]) -> dict[str, bytes | None]:
+        """The chunks of a batch, of arrays over its cases; None where all is NaN, as no file is read."""
         counts = [part.stop - part.start for part in self.batches.region(batch)]
+        made: dict[str, bytes | None] = {}
         for name, values in arrays.items():
-            place, made[name] = self.path / self.chunk(name, batch), None
-            if np.isnan(values).all():  # as no file is read
-                place.unlink(missing_ok=True)
-                continue
             whole = np.full(self._shape(name), np.nan, "<f8")
             whole[tuple(map(slice, counts))] = values.reshape(*counts, *self.arrays[name])
-            data, draft = whole.tobytes(), place.with_name(f".{place.name}.part")
-            draft.write_bytes(data)
-            os.replace(draft, place)
-            made[name] = hashlib.sha256(data).hexdigest()
+            made[name] = None if np.isnan(values).all() else whole.tobytes()
         return made
 
-    def damaged_chunks(self, batch: int, hashes: Mapping[str, str | None]) -> list[str]:
-        """The chunks of a batch that are not what they should be."""
-        chunks = {name: self.chunk(name, batch) for name in self.arrays}
-        return [chunk for name, chunk in chunks.items() if self._hash(name, batch) != hashes.get(name, "none")]
+    def write(self, batch: int, chunks: Mapping[str, bytes | None]) -> None:
+        """Put chunks of a batch in their places, one after the other."""
+        for name, data in chunks.items():
+            place = self.path / self.chunk(name, batch)
+            if data is None:
+                place.unlink(missing_ok=True)
+                continue
+            draft = place.with_name(f".{place.name}.part")
+            draft.write_bytes(data)
+            os.replace(draft, place)
 
-    def _hash(self, name: str, batch: int) -> str | None:
-        """Of a chunk; None where there is none, "" of a file that is no chunk of this array."""
-        return file_hash(self.path / self.chunk(name, batch), 8 * prod(self._shape(name)))
+    def damaged_chunks(self, batch: int, mark: BatchMark) -> list[str]:
+        """The chunks of a batch that are not what its mark says."""
+        return [
+            self.chunk(name, batch) for name, found in self.hashes(batch).items() if found not in mark.allowed(name)
+        ]
+
+    def hashes(self, batch: int) -> dict[str, str | None]:
+        """Of the chunks of a batch as they are; None where there is none, "" of a file that is no chunk of an array."""
+        return {
+            name: file_hash(self.path / self.chunk(name, batch), 8 * prod(self._shape(name))) for name in self.arrays
+        }
 
     def read(self, name: str, batch: int) -> Array:
         """The values of a batch in an array, (dimensions, rest); NaN where there is no chunk."""
@@ -121,8 +129,13 @@ def file_hash(path: Path, size: int | None = None) -> str | None:
 def folder_content(path: Path) -> set[str]:
     """What is in a folder, folders in it too. DamagedError for links, and what else could lead to elsewhere."""
     found = [path, *(Path(parent, each) for parent, folders, files in os.walk(path) for each in (*folders, *files))]
-    for each in found:
-        if not S_ISREG(mode := each.lstat().st_mode) and not S_ISDIR(mode):
+    for each in list(found):
+        try:
+            mode = each.lstat().st_mode
+        except FileNotFoundError:  # a draft that has come to its place since
+            found.remove(each)
+            continue
+        if not S_ISREG(mode) and not S_ISDIR(mode):
             raise DamagedError(f"{each}: neither a file nor a folder; a sweep's folder holds nothing else: delete it")
     return {each.relative_to(path).as_posix() for each in found[1:]}
 
