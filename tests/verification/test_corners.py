@@ -31,6 +31,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, integrations, link_pulls
+from wavesym.verification.corner_history import CornerHistory, compare_events
 from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
@@ -420,3 +421,23 @@ def test_the_midpoint_rule_is_of_order_two_where_friction_turns() -> None:
         truth = Reference(model).values(taus.tolist())
         errors.append(np.max(np.abs(problem.outputs(grid.integrate(instants)[0], taus) - truth)))
     assert errors[2] < errors[0] / 100
+
+
+@pytest.mark.parametrize(
+    ("events", "seen", "passed"),
+    [
+        ("slips 1.1, slips 1.128, sticks 1.156", "", [True] * 3),  # within less than four steps
+        ("slips 1.1, slips 1.16, sticks 1.24", "", [False]),
+        ("slips 1, slips 1.02, sticks 1.05, slips 2, sticks 3", "slips 2, sticks 3", [True] * 5),
+        ("slips 1, sticks 2, slips 3, slips 3.02, sticks 3.05", "slips 1, sticks 2", [True] * 5),
+        ("slips 1, slips 1.02, sticks 1.05", "sticks 1.06", [True] * 3),  # as it slides from the start
+    ],
+)
+def test_what_slips_turns_and_sticks_at_once_is_too_short_to_see(events: str, seen: str, passed: list[bool]) -> None:
+    def listed(text: str) -> list[tuple[str, float]]:
+        return [(kind, float(tau)) for kind, tau in (each.split() for each in text.split(", ") if each)]
+
+    claimed: Any = [SimpleNamespace(kind=kind, double=tau) for kind, tau in listed(events)]
+    found = CornerHistory([(Change(0, kind, tau), 0.05) for kind, tau in listed(seen)], 0.08)
+    outcomes = list(compare_events("0", claimed, {"midpoint": found}, 4.0))
+    assert [outcome.passed for outcome in outcomes][-len(passed) :] == passed

@@ -38,6 +38,9 @@ class CornerHistory:
         kept = list(range(len(claimed)))
         while len(kept) > len(self.changes) and claimed[kept[0]].double < self.shortest:
             del kept[0]
+        for slide in self._short_slides(claimed, kept):
+            if len(kept) - len(slide) >= len(self.changes):
+                kept = [k for k in kept if k not in slide]
         while len(kept) > max(len(self.changes), 1):
             lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
             if min(lasting) >= self.shortest:
@@ -47,6 +50,13 @@ class CornerHistory:
             # what goes back, or comes to rest, after a moment is one event
             kept = turned if self._fits(claimed, turned) and not self._fits(claimed, neither) else neither
         return kept
+
+    def _short_slides(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> list[range]:
+        """What slips, turns and sticks again before it is seen, the shortest first."""
+        ends = [-1, *(k for k in kept if claimed[k].kind == "sticks")]
+        slides = [range(before + 1, end + 1) for before, end in pairwise(ends)]
+        lasting = {slide: claimed[slide[-1]].double - claimed[slide[0]].double for slide in slides if len(slide) > 2}
+        return sorted((slide for slide in lasting if lasting[slide] < self.shortest), key=lasting.__getitem__)
 
     def _fits(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> bool:
         """Whether what it has seen is the first of these."""
