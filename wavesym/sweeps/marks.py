@@ -36,7 +36,7 @@ class BatchMark(SealedFile):
     left: list[int]
     coming: dict[str, Sha256 | None] = Field(default_factory=dict)
 
-    def allowed(self, name: str) -> set[str | None]:
+    def allowed_hashes(self, name: str) -> set[str | None]:
         """The hashes that the chunk of an array may have."""
         return {each[name] for each in (self.chunks, self.coming) if name in each}
 

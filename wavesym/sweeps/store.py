@@ -89,7 +89,9 @@ class Store:
     def damaged_chunks(self, batch: int, mark: BatchMark) -> list[str]:
         """The chunks of a batch that are not what its mark says."""
         return [
-            self.chunk(name, batch) for name, found in self.hashes(batch).items() if found not in mark.allowed(name)
+            self.chunk(name, batch)
+            for name, found in self.hashes(batch).items()
+            if found not in mark.allowed_hashes(name)
         ]
 
     def hashes(self, batch: int) -> dict[str, str | None]:

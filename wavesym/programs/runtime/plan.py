@@ -130,7 +130,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     units = tuple(AppliedLoad(source, time, fmpq(1)) for time, source in sorted(changes))
     plan = free_march(model, free, units, real, HELPS)
 
-    def known(instead_of_0: int) -> MarchPlan:
+    def scene_march(instead_of_0: int) -> MarchPlan:
         """In the scene each counts as it says."""
         weighed = (
             replace(change, weight=change.weight * (load.weight or instead_of_0))
@@ -139,8 +139,8 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
         )
         return march_plan(replace(model, loads=merge_loads(weighed)), real, helps=HELPS, or_pieces=False)
 
-    own = known(1)
-    usual = (own, known(0)) if any(load.weight == 0 for load in loads) else (own,)
+    own = scene_march(1)
+    usual = (own, scene_march(0)) if any(load.weight == 0 for load in loads) else (own,)
     is_zero = zero_outputs(free.some, loads, real)
     output_terms = tuple(
         (number, replace(wave, gain=fmpq(0)) if is_zero[number] else wave)
