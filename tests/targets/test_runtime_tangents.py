@@ -9,10 +9,12 @@ from hypothesis import given as drawing
 from hypothesis import strategies as st
 
 import wavesym
+from tests.support.builds import LANGUAGES, STRICT
 from tests.support.built_model import BuiltModel
 from tests.support.slopes import beyond, slope_of
 from tests.targets.test_runtime_c import CASES, DRIVE, flat, scene_with
 from tests.targets.test_runtime_extremes import LOAD, STOREYS
+from wavesym.running.toolchain import compiler
 
 
 def steepness(made, scene, given, count=41):
@@ -168,3 +170,14 @@ def test_one_that_cancels_is_not_claimed(tmp_path):
     made = BuiltModel(STOREYS, ["kappa", "load"], tmp_path)
     assert made.tangents([0.25, 0.6, 1e-30, *LOAD], 0.0, 0.2, 101)[0] == 0
     assert made.tangent_estimate(1) == np.inf
+
+
+@pytest.mark.parametrize("level", ["-O1", "-O2", "-O3"])
+def test_no_masses_are_no_warning(level, tmp_path):
+    """Of a rod alone no joint has a state: gcc took what a loop over none of them reads for what was never set."""
+    system = {"type": "chain", "parts": [{"joint": True, "name": "end"}, {"rod": 1}, "fixed"]}
+    load = {"at": "end", "times": [0], "steps": [1]}
+    scene = wavesym.Scene(name="bar", system=system, load=[load], output={"until": 2, "velocity": [0]})
+    wavesym.generate(scene, tmp_path, runtime=["impedance"], parts=["gradients"])
+    compiler().run([*LANGUAGES["c99"], *STRICT, level, "-c", "bar.c", "-o", "bar.o"], tmp_path)
+    assert (tmp_path / "bar.o").stat().st_size > 0

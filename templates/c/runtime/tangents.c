@@ -17,7 +17,8 @@ static real sensitivity(const laws *law, const laws *slope)
 {
     real most = 0;
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
-        const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+        const int n = NAME_STATES > 0 ? states_of(joint) : 0; /* where there are none no compiler looks for what they have */
+        const int points = points_of(joint), first = first_state[joint];
         real acts[NAME_WIDEST] = {0}, more[NAME_WIDEST] = {0}, taken[NAME_WIDEST] = {0};
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
             acts[point_of[port]] += magnitude(law->push[port]);
