@@ -61,7 +61,7 @@ def connect(workers: int | None, address: str | None) -> Iterator[Any]:
                 address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
             except (OSError, RuntimeError, TimeoutError) as error:
                 raise ClusterError(
-                    f"the workers of this machine do not start ({error}); the sweep goes on here"
+                    f"the workers of this machine do not start ({error}); started again, the sweep goes on where it was"
                 ) from None
         try:
             client = Client(address, timeout=_WAIT, set_as_default=False)

@@ -131,7 +131,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     plan = free_march(model, free, units, real, HELPS)
 
     def scene_march(instead_of_0: int) -> MarchPlan:
-        """In the scene each counts as it says."""
+        """As the scene says, in which each counts as it says, or, where that is 0, as another number."""
         weighed = (
             replace(change, weight=change.weight * (load.weight or instead_of_0))
             for load, changes in zip(loads, acting, strict=True)
