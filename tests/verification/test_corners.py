@@ -430,7 +430,8 @@ def test_the_midpoint_rule_is_of_order_two_where_friction_turns() -> None:
         ("slips 1.1, slips 1.16, sticks 1.24", "", [False]),
         ("slips 1, slips 1.02, sticks 1.05, slips 2, sticks 3", "slips 2, sticks 3", [True] * 5),
         ("slips 1, sticks 2, slips 3, slips 3.02, sticks 3.05", "slips 1, sticks 2", [True] * 5),
-        ("slips 1, slips 1.02, sticks 1.05", "sticks 1.06", [True] * 3),  # as it slides from the start
+        ("slips 1, slips 1.02, sticks 1.05", "sticks 1.06", [True] * 3),
+        ("slips 0, slips 1, slips 1.02, sticks 1.05", "", [False]),  # it slides from the start, and comes to rest
     ],
 )
 def test_what_slips_turns_and_sticks_at_once_is_too_short_to_see(events: str, seen: str, passed: list[bool]) -> None:
